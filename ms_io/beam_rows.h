@@ -23,8 +23,8 @@ struct SortRows {
   std::uint64_t rows = 0;
 };
 
-/// Where the antennas of a field pointed: its REFERENCE_DIR; where that moves, at one of three times, and where the image moves
-/// along, where it stands in the image. It stays where it is when visibilities are shifted to another phase centre, which moves
+/// Where the antennas of a field pointed: its REFERENCE_DIR, at one of three times where that moves, and as it stands in the
+/// image where the image moves along. It stays where it is when visibilities are shifted to another phase centre, which moves
 /// PHASE_DIR. The table POINTING is looked at where Selection::pointing_tolerance_rad is given, and then only for a SightTable.
 struct FieldPointing {
   std::string field;                ///< "3 (M51)", or "3 (M51) at 2026-01-02T03:04:05"
@@ -34,33 +34,33 @@ struct FieldPointing {
   std::string set = {};             ///< path of the set whose field it is
   double from_centre_rad = 0;       ///< from the phase centre of the image
   double smallest_dish_m = 0;       ///< diameter of the set's smallest antenna; 0 where none is known
-  std::vector<SortRows> rows = {};  ///< its rows of two antennas; of BeamRows alone
+  std::vector<SortRows> rows = {};  ///< its rows of two antennas; in BeamRows alone
 };
 
 /// The lists in which the numbers of rows' sights, see imager::RowSight, are places.
 struct SightTable {
-  std::vector<imager::AntennaSort> antennas;  ///< all antennas of one set after those of the other, as ANTENNA lists them
-  std::vector<FieldPointing> pointings;       ///< of one set after those of the other; their rows are not counted
+  std::vector<imager::AntennaSort> antennas;  ///< set by set, as ANTENNA lists them
+  std::vector<FieldPointing> pointings;       ///< set by set; their rows are not counted
 };
 
-/// Where a feed's beam points beside its dish's axis, as FEED's BEAM_OFFSET says: the mean of its receptors', on the sky, along
-/// axes of the antenna's frame, which mounts turn.
+/// The offset of a feed's beam from its dish's axis: the mean of its receptors' BEAM_OFFSETs in FEED, on the sky, along axes of
+/// the antenna's frame, which mounts turn.
 struct FeedOffset {
   int feed = 0;  ///< FEED_ID
   double x_rad = 0;
   double y_rad = 0;
-  int antenna = -1;      ///< the first of which that is so; -1: of all
+  int antenna = -1;      ///< the first with this offset; -1: all have it
   std::string set = {};  ///< path
 
   double rad() const { return std::hypot(x_rad, y_rad); }
 };
 
-/// What rows were observed with, and in which direction.
+/// The antennas and feeds of rows, and the directions in which they observed.
 struct BeamRows {
-  std::vector<imager::AntennaSort> sorts;  ///< of antennas in rows of two antennas
+  std::vector<imager::AntennaSort> sorts;  ///< of the antennas in rows of two antennas
   std::vector<SortPair> pairs;             ///< [row], in the order in which blocks hold them; empty where there is one sort
   std::vector<FieldPointing> pointings;    ///< of all fields with selected rows, see field_pointings()
-  std::vector<FeedOffset> feeds;           ///< of those in use, each different one once for a set
+  std::vector<FeedOffset> feeds;           ///< of feeds in use, each different offset once for a set
 
   /// The largest offset of a feed.
   double beam_offset_rad() const {

@@ -7,16 +7,16 @@
 
 namespace misfit::ms_io {
 
-/// Adds what the rows of one more set tell about an image with this phase centre; pairs even where there is one sort. Throws
+/// Adds the rows of one more set, for an image with this phase centre; fills pairs even where there is one sort. Throws
 /// std::runtime_error where ANTENNA, FEED, FIELD or the columns of antennas and feeds cannot be read, rows name antennas that
 /// ANTENNA lacks, or there are more than 256 sorts.
 void add_beam_rows(const OpenSet& open_set, const imager::SkyDirection& centre, BeamRows& rows);
 
-/// What ANTENNA says of each antenna. Throws std::runtime_error where it cannot be read.
+/// The sort of each antenna, from ANTENNA. Throws std::runtime_error where it cannot be read.
 std::vector<imager::AntennaSort> antenna_sorts(const OpenSet& open_set);
 
-/// The largest that FEED gives for any feed, in use or not: no rows of the set are read. Throws std::runtime_error where FEED
-/// cannot be read.
+/// The largest beam offset in FEED of any feed, in use or not: no rows of the main table are read. Throws std::runtime_error
+/// where FEED cannot be read.
 double beam_offset_rad(const OpenSet& open_set);
 
 }  // namespace misfit::ms_io

@@ -9,7 +9,7 @@
 namespace misfit::ms_io {
 
 /// Blocks that follow one another and are read at once, because rows of DATA_DESC_IDs whose cells are alike alternate: together
-/// they are ranges of the table, which are read faster than row by row. Else one block.
+/// they are ranges of the table, which are read faster than row by row. Otherwise a group is one block.
 struct BlockGroup {
   std::size_t blocks = 0;
   std::uint64_t rows = 0;

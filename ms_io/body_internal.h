@@ -24,10 +24,10 @@ class Body {
   Body& operator=(const Body&) = delete;
   virtual ~Body() = default;
 
-  /// As an observer at the epoch and the position of `frame` has to phase to it: astrometric, so without aberration, which
-  /// turns all directions of a field alike; seen from the place, and not from the middle of the Earth.
+  /// The direction that an observer at the epoch and the position of `frame` has to phase to: astrometric, without aberration,
+  /// which turns all directions of a field alike; seen from that position, and not from the middle of the Earth.
   casacore::MDirection seen_from(const casacore::MeasFrame& frame, const casacore::MEpoch& when) const;
-  /// Positive away from the middle of the Earth or, where velocity_frame() is TOPO, from the observer.
+  /// The velocity, positive away from the middle of the Earth or, where velocity_frame() is TOPO, from the observer.
   virtual double recession_m_s(const casacore::MEpoch& when) const = 0;
   virtual casacore::MFrequency::Types velocity_frame() const { return casacore::MFrequency::GEO; }
 
@@ -42,9 +42,10 @@ class Body {
 /// Whether casacore has a body of this name, such as "JUPITER", in capitals or not.
 bool is_body_name(const std::string& name);
 
-/// The body of such a name or, where it is none, of the table of an ephemeris at that path. What CASA keeps beside FIELD
-/// (FIELD/EPHEM*.tab) lists directions to which telescopes phased, and is taken as it is; other tables are seen from the middle
-/// of the Earth unless they say otherwise. Throws casacore::AipsError that says what was expected where there is no such table.
+/// The body of this name or, where casacore has none, of the table of an ephemeris at that path. CASA's tables beside FIELD
+/// (FIELD/EPHEM*.tab) list directions to which telescopes phased, and are taken as they are; other tables are seen from the
+/// middle of the Earth unless they say otherwise. Throws casacore::AipsError that says what was expected where there is no such
+/// table.
 std::shared_ptr<const Body> make_body(const std::string& name);
 
 }  // namespace misfit::ms_io

@@ -26,12 +26,12 @@ struct CasaPlanes {
   bool celestial = true;      ///< whether the first two say where pixels lie on the sky
 
   casacore::IPosition first_pixel(const imager::PlaneIndex& at) const;
-  /// Of one plane.
+  /// The shape of one plane.
   casacore::IPosition plane_shape() const;
 };
 
-/// Looks at what an image's table holds of its coordinates, in its keyword "coords". Throws std::runtime_error(`path` …) where
-/// directions are in another frame than in_frame() knows: casacore fails over some of them, and does not say of what.
+/// Checks the coordinates of an image's table, in its keyword "coords". Throws std::runtime_error(`path` …) where directions
+/// are in a frame that in_frame() does not know: casacore fails over some frames without a reason.
 void check_frames(const casacore::RecordInterface& coordinates, const std::string& path);
 
 /// Throws std::runtime_error(`path` …) where a longitude and a latitude are not the first two axes, or another than the Stokes
@@ -39,9 +39,9 @@ void check_frames(const casacore::RecordInterface& coordinates, const std::strin
 CasaPlanes find_planes(const casacore::CoordinateSystem& coordinates, const casacore::IPosition& shape,
                        const std::string& path);
 
-/// What coordinates say, but for the unit and where pixels lie on the sky. Stokes and spectral coordinates without an axis of
-/// pixels say of all pixels which Stokes parameter and frequency they are of. Throws std::runtime_error(`path` …) where the
-/// spectral axis is not linear.
+/// The header that coordinates give, but for the unit and where pixels lie on the sky. Stokes and spectral coordinates without
+/// an axis of pixels say of all pixels which Stokes parameter and frequency they are of. Throws std::runtime_error(`path` …)
+/// where the spectral axis is not linear.
 imager::ImageHeader header_of(const casacore::CoordinateSystem& coordinates, const CasaPlanes& planes, const std::string& path);
 
 /// Where the pixels lie on the sky, in a frame that check_frames() knows; none where the image has no directions. Throws

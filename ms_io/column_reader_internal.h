@@ -31,7 +31,7 @@ class ColumnReader {
  public:
   explicit ColumnReader(std::shared_ptr<const OpenSet> source);
 
-  /// `rows`, whose cells all have the shape that `setup` says, into memory of `stored` that is used again. Throws
+  /// Reads `rows`, whose cells all have the shape that `setup` says, into memory of `stored` that is used again. Throws
   /// std::runtime_error that names the column which cannot be read.
   void read_rows(const Rows& rows, const Setup& setup, StoredRows& stored);
 
@@ -75,7 +75,7 @@ class ColumnReader {
   bool several_observations_ = false;
   casacore::ScalarColumn<double> time_;
   bool needs_time_ = false;
-  /// By the window's frame, the field, see Setup::field, and OBSERVATION_ID.
+  /// [the window's frame, the field, see Setup::field, and OBSERVATION_ID]
   std::map<std::tuple<std::string, int, int>, std::unique_ptr<FrameRatio>> ratio_;
   casacore::ScalarColumn<bool> flag_row_;
   bool flag_row_is_dear_ = false;

@@ -13,23 +13,23 @@
 namespace misfit::ms_io {
 
 /// Where a body of the solar system goes: a table of right ascensions and declinations such as CASA keeps beside FIELD. Between
-/// its rows directions are cubic polynomials of time, through the four rows about it: where the body goes by δ between rows,
-/// they err by some 0.02 δ⁴, and straight lines, as casacore draws them, by δ²/8. So are its other columns.
+/// its rows directions and other columns are cubic polynomials of time, through the four rows about it: where the body goes by
+/// δ between rows, they err by some 0.02 δ⁴, and straight lines, as casacore draws them, by δ²/8.
 class Ephemeris {
  public:
   /// Reads the table at `path`. Throws casacore::AipsError that names it and what was expected where it does not have two rows
   /// or more in the order of time, of finite numbers, in a frame that is known.
   explicit Ephemeris(const std::string& path);
 
-  /// Seen from the middle of the Earth, or from where the table says. Throws casacore::AipsError outside the table's times.
+  /// The direction as seen from the middle of the Earth, or from where the table says. Throws casacore::AipsError outside the
+  /// table's times.
   casacore::MDirection at(double utc_mjd) const;
   /// Whether it is seen from the middle of the Earth.
   bool geocentric() const { return geocentric_; }
-  /// Rho, from there. Throws what at() does, and where the table has no such column.
-  /// Throws also where it lies within the Earth.
+  /// Rho, the distance from where it is seen. Throws what at() does, and where the table has no such column, or the place lies
+  /// within the Earth.
   double distance_m(double utc_mjd) const;
-  /// RadVel, positive away from there. Throws what distance_m() does.
-  /// Throws also where it is that of light or more.
+  /// RadVel, positive away from where it is seen. Throws what distance_m() does, and where it is the speed of light or more.
   double recession_m_s(double utc_mjd) const;
 
  private:
@@ -39,7 +39,7 @@ class Ephemeris {
     std::vector<double> weight;
   };
 
-  /// With the unit that it has unless it says otherwise, and that in which it is wanted.
+  /// A column, with the unit that it has unless it states another, and the unit in which it is wanted.
   struct Column {
     const char* name;
     const char* usual_unit;

@@ -10,13 +10,13 @@
 namespace misfit::ms_io {
 
 /// Finds where the fields of `selected` are phased to, at each of their times where that moves, and how `selection` leads them
-/// to one phase centre: fills `moving` to `remarks`, and the shifts of setups. Where they have to be shifted to a direction
-/// that `selection` does not name, does none of this but remarks, and returns the direction: the rows are to be selected anew
-/// with it. Throws std::runtime_error, which says what would help, where fields have no phase centre in common.
+/// to one phase centre: fills the members from `moving` to `remarks`, and the shifts of setups. Where fields have to be shifted
+/// to a direction that `selection` does not name, only fills remarks, and returns the direction: the rows are to be selected
+/// anew with it. Throws std::runtime_error, which says what would help, where fields have no phase centre in common.
 std::optional<imager::SkyDirection> settle_phase_centre(const casacore::MeasurementSet& set, const std::string& path,
                                                         const Selection& selection, SelectedRows& selected);
 
-/// How far what moves has to go to be told of, and targets may part: a thousandth of the finest beam.
+/// The least motion that is reported, and the most that targets may lie apart: a thousandth of the finest beam.
 double noticed_motion_rad(double finest_beam_rad);
 
 /// The centre of an image that moves with a field, at a time.
@@ -30,10 +30,10 @@ FieldCentre usual_centre(FieldDirections& fields, const casacore::MeasurementSet
 /// the digits by which they print it.
 double close_centre_rad(double finest_beam_rad);
 
-/// The first selected row's.
+/// The field of the first selected row.
 int first_field(const casacore::MeasurementSet& set, const SelectedRows& selected);
 
-/// From the first to the last selected row of any field that moves.
+/// The times from the first to the last selected row of any field that moves.
 TimeSpan moving_span(const SelectedRows& selected);
 
 /// "1.2 arcsec", for messages.

@@ -25,37 +25,37 @@ struct FieldCentre {
   casacore::MEpoch observed;  ///< at which B1950 is taken: it turns against the other frames, by 0.1 arcsec in 30 years
 };
 
-/// How what FIELD says of a direction depends on time: not at all; by a polynomial, an ephemeris or a frame of date, so that it
-/// follows a target; or by a frame that turns with the Earth.
+/// How a direction of FIELD depends on time: not at all; by a polynomial, an ephemeris or a frame of date, so that it follows a
+/// target; or by a frame that turns with the Earth.
 enum class Motion { none, target, earth };
 
 /// When a field is looked at.
 struct Moment {
   double time_s = 0;      ///< as TIME stores it
-  std::uint64_t row = 0;  ///< of the field: its telescope is where from
+  std::uint64_t row = 0;  ///< of the field: it is seen from this row's telescope
 };
 
-/// The directions of a set's fields at any time, in J2000 where their own frame is neither that nor ICRS or B1950. All throw
-/// std::runtime_error that names the field where there is none of that number, or its direction cannot be found.
+/// The directions of a set's fields at any time, in J2000 where their own frame is not J2000, ICRS or B1950. All functions
+/// throw std::runtime_error that names the field where there is none of that number, or its direction cannot be found.
 class FieldDirections {
  public:
-  /// What images of the fields move with is `body`, or else what each follows.
+  /// Images of the fields move with `body`, or else with what each field follows.
   FieldDirections(const casacore::MeasurementSet& set, const std::string& path, std::shared_ptr<const Body> body = nullptr);
 
-  /// Of PHASE_DIR.
+  /// The motion of PHASE_DIR.
   Motion motion(int field) const;
-  /// Of REFERENCE_DIR.
+  /// The motion of REFERENCE_DIR.
   Motion pointing_motion(int field) const;
   /// Whether its direction is a polynomial of time, which is meant for the time of its rows.
   bool goes_by_rates(int field) const { return has_rates(columns_.phaseDir(), row_of(field)); }
-  /// How far a TIME lies from that of which the field's rates are; 0 without rates.
+  /// How far a TIME lies from the origin of the field's rates; 0 without rates.
   double since_origin_s(int field, double time_s) const;
   /// Where the field is phased to: PHASE_DIR, which is an offset where the field has an ephemeris.
   FieldCentre centre(int field, const Moment& when);
-  /// Where the body is, as seen from the field's telescope; else the field's ephemeris without that offset or, where it has
-  /// none, centre().
+  /// Where the body is, as seen from the field's telescope; without a body, the field's ephemeris without the offset of
+  /// PHASE_DIR or, where it has none, centre().
   FieldCentre target(int field, const Moment& when);
-  /// Of the body, else by the field's ephemeris, see Body. Both throw where there is neither.
+  /// The velocity of the body, or else of the field's ephemeris, and its frame, see Body. Both throw where there is neither.
   double recession_m_s(int field, double time_s);
   casacore::MFrequency::Types velocity_frame(int field);
   /// Whether the field's own frame is that of a planet, so that it depends on the place of its telescope.
@@ -98,7 +98,7 @@ class FieldDirections {
 
   const casacore::MeasurementSet& set_;
   std::string path_;
-  std::shared_ptr<const Body> body_;  ///< null: each follows its own
+  std::shared_ptr<const Body> body_;  ///< null: each field follows its own
   casacore::MSField plain_;           ///< without ephemerides
   casacore::MSFieldColumns columns_;
   std::vector<int> ephemeris_id_;          ///< [field]; empty: none has one

@@ -7,8 +7,8 @@
 
 namespace misfit::ms_io {
 
-/// What users should know of the way of a field that moves, in sentences: where a frame that turns with the Earth is seen from
-/// in doubt, or casacore does not know how the Earth turned; and that rates are of another year. `first` is the field's first
+/// Sentences for users on the way of a field that moves: that the place from which a frame that turns with the Earth is seen is
+/// in doubt, that casacore does not know how the Earth turned, or that rates are of another year. `first` is the field's first
 /// moment.
 std::vector<std::string> doubts_of_motion(const casacore::MeasurementSet& set, const FieldDirections& fields, int field,
                                           const Moment& first);

@@ -12,17 +12,17 @@
 
 namespace misfit::ms_io {
 
-/// An image with this phase centre, made of a set, as directions of the sky stand to it. Both must outlive it. Throws
-/// std::runtime_error when FIELD or ANTENNA cannot be read.
+/// Finds where directions of the sky lie in an image with this phase centre, made of a set. Both arguments must outlive it.
+/// Throws std::runtime_error when FIELD or ANTENNA cannot be read.
 class ImageView {
  public:
   ImageView(const OpenSet& open_set, const imager::SkyDirection& centre);
 
   /// Where the direction lies in the image at a TIME, as the image's header has it.
   imager::SkyDirection seen(const imager::SkyDirection& direction, double time_s);
-  /// Of the antennas of a field, in that direction of the image; of one TIME where it is given.
+  /// The pointing of the antennas of a field, in that direction of the image; of one TIME where it is given.
   FieldPointing pointing(int field, const imager::SkyDirection& direction, std::optional<double> time_s = {}) const;
-  /// One of the field that has this row or, where it moves, three in the course of time.
+  /// One pointing of the field that has this row or, where it moves, three in the course of time.
   std::vector<FieldPointing> of_field(int field, std::uint64_t row);
 
  private:
@@ -30,11 +30,11 @@ class ImageView {
   const imager::SkyDirection& centre_;
   double dish_m_;
   FieldDirections fields_;
-  std::optional<std::pair<double, imager::SkyDirection>> then_;  ///< the centre of what moves at the TIME asked for last
+  std::optional<std::pair<double, imager::SkyDirection>> then_;  ///< the moving centre at the TIME asked for last
 };
 
-/// Of the fields that have selected rows, in the order of their ids, seen from `centre`. Throws std::runtime_error when FIELD
-/// or ANTENNA cannot be read.
+/// The pointings of the fields that have selected rows, in the order of their ids, seen from `centre`. Throws
+/// std::runtime_error when FIELD or ANTENNA cannot be read.
 std::vector<FieldPointing> field_pointings(const OpenSet& open_set, const imager::SkyDirection& centre);
 
 }  // namespace misfit::ms_io

@@ -12,11 +12,11 @@ namespace misfit::ms_io {
 
 /// The TIMEs of a field's selected rows, as the set stores them.
 struct FieldTimes {
-  std::vector<double> used;  ///< of rows that are not flagged or, where all are, of these; different, ascending, finite
+  std::vector<double> used;  ///< of rows that are not flagged or, where all are, of all; different, ascending, finite
   std::vector<double> idle;  ///< of flagged rows alone, which may be any; different, ascending, and not finite ones last
 };
 
-/// Of each of `fields`. Throws std::runtime_error for a row that is not flagged and whose TIME is not finite.
+/// The times of each of `fields`. Throws std::runtime_error for a row that is not flagged and whose TIME is not finite.
 std::map<int, FieldTimes> times_of(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected,
                                    const std::set<int>& fields);
 

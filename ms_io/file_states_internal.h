@@ -7,8 +7,8 @@
 
 namespace misfit::ms_io {
 
-/// What the system tells of all files of some tables and of those in them, lock files apart: when they were last changed, how
-/// long they are, and which ones they are.
+/// The states of all files of some tables and their subtables, lock files apart: when they were last changed, how long they
+/// are, and which ones they are.
 class FileStates {
  public:
   void remember(const std::string& table);

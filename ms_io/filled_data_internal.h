@@ -22,17 +22,17 @@ struct RowData {
   std::size_t values = 0;
 };
 
-/// Which fields of which spectral windows of a selection hold data, learned from rows as they are read: in any order, each as
-/// often as one likes, and some channels at a time.
+/// Which fields of which spectral windows of a selection hold data, learned from rows as they are read: in any order,
+/// repeatedly, and some channels at a time.
 class FilledData {
  public:
   explicit FilledData(const std::vector<Setup>& setups);
 
   /// Whether more rows could tell more; where none could, they need not be looked at.
   bool in_doubt() const { return doubts_ > 0; }
-  /// Learns from a row. One of zeros alone, all of which are flagged, tells nothing.
+  /// Learns from a row. A row of zeros alone, all flagged, tells nothing.
   void look_at(int data_description, int field, const RowData& row);
-  /// Of what any of `ranks` has looked at; they call this together.
+  /// The zeros in what any of `ranks` has looked at; they call this together.
   Zeros zeros(const imager::Ranks& ranks) const;
 
  private:

@@ -8,14 +8,15 @@ namespace misfit::ms_io {
 /// The folder of an image that is made beside its place, and put there when it is complete; until then it is removed again.
 class ImageFolder {
  public:
-  /// Of the image called `path`; links are followed. Throws std::runtime_error that names it where anything else than a
-  /// casacore image lies, or something is in the way that no casacore image left that was never finished.
+  /// The folder of the image called `path`; links are followed. Throws std::runtime_error that names the path where anything
+  /// else than a casacore image lies, or where the unfinished folder's name holds anything else than the remains of an
+  /// unfinished casacore image.
   explicit ImageFolder(const std::string& path);
   ImageFolder(const ImageFolder&) = delete;
   ImageFolder& operator=(const ImageFolder&) = delete;
   ~ImageFolder();
 
-  /// Where it is made.
+  /// The folder where it is made.
   std::string name() const { return unfinished_.string(); }
   /// Puts it in its place; a casacore image that is there gives way. Throws as the constructor does.
   void put_in_place();

@@ -6,7 +6,7 @@
 
 namespace misfit::ms_io {
 
-/// As check_standard_header(), of casacore's IncrementalStMan, which keeps a value once for the rows that share it.
+/// check_standard_header() for casacore's IncrementalStMan, which keeps a value once for the rows that share it.
 void check_incremental_header(const std::string& path, const TableFile& table, const StorageManager& manager);
 
 }  // namespace misfit::ms_io

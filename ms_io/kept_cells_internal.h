@@ -11,15 +11,16 @@
 
 namespace misfit::ms_io {
 
-/// The cells of a block before data − model take their place in the column from which the data are read: a run that is killed
-/// meanwhile leaves some of the cells changed, and nobody could tell which. A file `misfit_kept_<COLUMN>` in the set's folder
-/// holds the block that is being written.
+/// Keeps the cells of a block while data − model replaces them in the column of the data: a run that is killed then leaves some
+/// of the cells changed, and nobody could tell which. A file `misfit_kept_<COLUMN>` in the set's folder holds the block that is
+/// being written.
 class KeptCells {
  public:
-  /// Of the column that `journal` tells of.
+  /// For the column called `column`.
   KeptCells(const casacore::Table& set, const std::string& column);
 
-  /// Keeps `cells` of `rows`, after which `journal` says which rows come before. Throws std::runtime_error that names the file.
+  /// Keeps `cells` of `rows`, with the rows of `journal` that were written before them. Throws std::runtime_error that names
+  /// the file.
   void keep(const ModelJournal& journal, std::size_t setup, const Rows& rows, const CellColumn::Cells& cells) const;
   /// Puts the kept cells back where the run of `journal` was cut short while it wrote them.
   void put_back(const ModelJournal& journal, const std::vector<Setup>& setups, ModelCells& column) const;

@@ -18,10 +18,10 @@
 
 namespace misfit::ms_io {
 
-/// Rows that can be used, neither flagged nor of one antenna; or all.
+/// Usable rows are neither flagged nor of one antenna.
 enum class ReachOf { usable, all };
 
-/// Ends included.
+/// A range of frequencies, both ends included.
 struct FrequencyRange {
   double low_hz = 0;
   double high_hz = 0;
@@ -34,7 +34,7 @@ struct SampleSharing {
   bool whole_sets = true;  ///< each rank has some of the sets; else ranges of rows, in the order of the tables
 };
 
-/// What visibilities are read from.
+/// The column of a set that visibilities are read from.
 struct DataColumn {
   std::string path;                     ///< of the set
   std::string name;                     ///< "CORRECTED_DATA"
@@ -58,7 +58,7 @@ std::string named_columns(const std::vector<std::string>& paths, const std::stri
 /// Reading never runs in two threads at once.
 class MeasurementSet : public imager::VisibilitySource {
  public:
-  /// Enough that the samples of a block share what a pass over the tiles of a grid costs.
+  /// So many that the cost of a pass over the tiles of a grid is shared by enough samples of a block.
   static constexpr std::uint64_t usual_block_samples = std::uint64_t{1} << 20;
 
   /// Opens `path`. `data_column` names the column with the visibilities ("DATA", "CORRECTED_DATA", …). Throws
@@ -71,8 +71,8 @@ class MeasurementSet : public imager::VisibilitySource {
   MeasurementSet(const std::string& path, const Selection& selection, const std::string& data_column,
                  const std::vector<imager::Stokes>& stokes = {imager::Stokes::I},
                  std::uint64_t block_samples = usual_block_samples);
-  /// The same of several sets, at least one, of which `selection` is made in each. They may differ in everything but their
-  /// phase centres. `data_column` names one column for all, or one for each, separated by commas.
+  /// Opens several sets, at least one; `selection` is made in each. They may differ in everything but their phase centres.
+  /// `data_column` names one column for all, or one for each, separated by commas.
   MeasurementSet(const std::vector<std::string>& paths, const Selection& selection, const std::string& data_column,
                  const std::vector<imager::Stokes>& stokes = {imager::Stokes::I},
                  std::uint64_t block_samples = usual_block_samples);
@@ -82,67 +82,69 @@ class MeasurementSet : public imager::VisibilitySource {
   std::vector<std::string> incomplete_columns() const;
   /// One for each set.
   std::vector<DataColumn> data_columns() const;
-  /// Of these, those where data are 0 of what any of `ranks` has read; they call this together.
+  /// The columns whose data are 0 in some or all of what `ranks` have read; they call this together.
   std::vector<ZeroColumn> columns_of_zeros(const imager::Ranks& ranks) const;
-  /// The correlations that are stored of what is selected, of all sets, in the order of their codes.
+  /// The correlations stored in the selected rows of all sets, in the order of their codes.
   std::vector<imager::Stokes> correlations() const;
-  /// Files of the sets that something changed, removed or made since they were opened: what was read may be neither what was
-  /// there before nor what is there now.
+  /// Files of the sets that were changed, removed or made since the sets were opened: the data read may be neither the old nor
+  /// the new ones.
   std::vector<std::string> changed_files() const;
-  /// What users should know of the directions and frames of what is selected, in sentences: of phase centres that move, or
-  /// differ by rounding, and of places from which frequencies cannot be converted as they should.
+  /// Sentences for users on directions and frames of the selection: on phase centres that move, or differ by rounding, and on
+  /// places from which frequencies cannot be converted as they should.
   const std::vector<std::string>& remarks() const;
-  /// Of I, Q, U and V those that a correlation responds to that is stored of what is selected, of any set.
+  /// The parameters of I, Q, U and V that a correlation stored in the selected rows of any set responds to.
   std::vector<imager::Stokes> seen_stokes() const;
   /// The selection, with the phase centre that visibilities are shifted to, also where it names none.
   const Selection& selection() const;
-  /// Of the first set, with the band of all; where the image moves with fields, in the middle of their run.
+  /// The observation of the first set, with the band of all sets; where the image moves with fields, in the middle of their
+  /// run.
   const imager::Observation& observation() const;
-  /// Where what an image of the first set moves with is at a time, UTC in ISO 8601; nothing where the image stands still, or
-  /// where that is not told of the time: by an ephemeris that does not reach it, or by rates, which are of the rows' times.
+  /// The place, at a time, UTC in ISO 8601, of the body or field that an image of the first set moves with. Nothing where the
+  /// image stands still, or the place at that time is not known: an ephemeris may not reach it, and rates are of the rows'
+  /// times.
   std::optional<imager::SkyDirection> followed_at(const std::string& utc) const;
   std::uint64_t rows() const;
   std::uint64_t samples() const override;
   /// Samples of the blocks that are read at once, at most: several blocks where rows of DATA_DESC_IDs alternate.
   std::uint64_t read_at_once() const;
-  /// Of the selected fields of all sets; their rows are not counted. Throws std::runtime_error when FIELD or ANTENNA cannot be
-  /// read.
+  /// The pointings of the selected fields of all sets; their rows are not counted. Throws std::runtime_error when FIELD or
+  /// ANTENNA cannot be read.
   std::vector<FieldPointing> field_pointings() const;
-  /// The largest angle by which FEED says that beams of any feed point beside their dishes' axes; 0 where it is 0 of all, so
-  /// that beam_rows() need not be asked. Throws std::runtime_error when FEED cannot be read.
+  /// The largest angle in FEED between a feed's beam and its dish's axis; where it is 0, beam_rows() need not be asked. Throws
+  /// std::runtime_error when FEED cannot be read.
   double beam_offset_rad() const;
   /// Reads antennas and feeds of all rows. Throws std::runtime_error when they, ANTENNA, FEED or FIELD cannot be read.
   BeamRows beam_rows() const;
-  /// What ANTENNA says of each antenna of the first set. Throws std::runtime_error where it cannot be read.
+  /// The sort of each antenna of the first set, from ANTENNA. Throws std::runtime_error where it cannot be read.
   std::vector<imager::AntennaSort> antennas() const;
-  /// Antennas and pointings, one set after the other, by whose places blocks tell the sights of their rows. Each selected
-  /// field has one pointing; where it moves, at the middle one of its rows' times. With Selection::pointing_tolerance_rad they
-  /// are where antennas pointed, in the order in which rows did, as first seen in some field at some time. The table is that of
-  /// the whole for parts and shares, too. Throws std::logic_error unless the selection asks for sights; where they cannot be
-  /// told, opening throws std::runtime_error.
+  /// The antennas and pointings, one set after the other, whose places in these lists are the numbers of rows' sights in
+  /// blocks. Each selected field has one pointing; where it moves, at the middle one of its rows' times. With
+  /// Selection::pointing_tolerance_rad pointings are where antennas pointed, in the order of the rows, in the field and at the
+  /// time at which they were first seen. Parts and shares have the table of the whole set. Throws std::logic_error unless the
+  /// selection asks for sights; where they cannot be told, opening throws std::runtime_error.
   const SightTable& sight_table() const;
-  /// Where the zenith was for each row, in the order in which blocks hold them: its position angle from north through east, by
-  /// which dishes on alt-azimuth mounts turn, as seen from where the row's field points; 0 of other mounts. Reads times,
-  /// fields and antennas of all rows. Throws std::runtime_error when they cannot be read.
+  /// The position angle of the zenith for each row, from north through east, as seen from where the row's field points, in the
+  /// order in which blocks hold rows. Dishes on alt-azimuth mounts turn by it; it is 0 for other mounts. Reads times, fields
+  /// and antennas of all rows. Throws std::runtime_error when they cannot be read.
   std::vector<float> zenith_turns() const;
   /// Bounds at the highest channel selected, of rows with finite UVW. Reads UVW, antennas and FLAG_ROW alone. Throws
   /// std::runtime_error when they cannot be read.
   imager::UvwReach reach(ReachOf rows = ReachOf::usable) const;
   /// The windows of all sets, in the frame that the selection names, and in the order in which it lists them, or of their ids.
   std::vector<SpectralWindow> spectral_windows() const;
-  /// Calls visit(coordinates) for some rows after others, all selected that have finite UVW and are neither flagged as a whole
-  /// nor of one antenna. Reads and throws what reach() does.
+  /// Calls visit(coordinates) for groups of rows, which together are all selected rows that have finite UVW and are neither
+  /// flagged as a whole nor of one antenna. Reads and throws what reach() does.
   void visit_coordinates(const std::function<void(const imager::SampleCoordinates&)>& visit) const;
   std::unique_ptr<imager::BlockStream> open() const override;
-  /// The same set, of which only channels are read that may come into a range of frequencies, in the frame that the selection
-  /// names, in the course of a year; null where there are none. The part of the range `counted` has counted its samples.
+  /// The same set, which reads only channels that may come into a range of frequencies, in the frame that the selection names,
+  /// in the course of a year; null where there are none. Samples of the part of the range `counted` are counted there already.
   std::unique_ptr<MeasurementSet> part(const FrequencyRange& range, const std::optional<FrequencyRange>& counted = {}) const;
   /// The same set, of which this rank reads its share alone: rows(), samples(), read_at_once(), visit_coordinates() and open()
-  /// are of that, and may be of nothing. All else is of the whole set, and reach() is called by all ranks. `ranks` must outlive
-  /// it.
+  /// are about the share, which may be empty. All else is about the whole set, and reach() is called by all ranks. `ranks` must
+  /// outlive it.
   std::unique_ptr<MeasurementSet> share(const imager::Ranks& ranks) const;
   const imager::Ranks& ranks() const override;
-  /// Of one rank without share().
+  /// How ranks share the samples; one rank has them all without share().
   SampleSharing sharing() const;
 
  private:

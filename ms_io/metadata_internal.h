@@ -8,8 +8,8 @@
 
 namespace misfit::ms_io {
 
-/// What the image header says of the rows selected; where the image moves with a field, that has the field's place in the
-/// middle of the rows. Throws std::runtime_error where that cannot be found.
+/// The observation in the image header of the rows selected; where the image moves with a field, with the field's place in the
+/// middle of the rows. Throws std::runtime_error where that place cannot be found.
 imager::Observation describe(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected);
 
 /// OBSERVATION_ID of `row`.
@@ -22,12 +22,12 @@ std::string telescope_name(const casacore::MeasurementSet& set, int observation)
 double utc_s(const casacore::MEpoch& time);
 std::string utc_text(double utc_s);
 
-/// Centres the header of an image that moves with a field on where that is at a time.
+/// Centres the header of an image that moves with a field on the field's place at a time.
 void centre_on_field(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected, double time_s,
                      imager::Observation& observation);
 
-/// What the header of one image of all says: the first, with the band of all. Throws std::runtime_error when two have different
-/// phase centres, or move with different targets.
+/// The observation in the header of one image of all sets: the first set's, with the band of all. Throws std::runtime_error
+/// when two sets have different phase centres, or move with different targets.
 imager::Observation joined(const OpenSets& sets);
 
 }  // namespace misfit::ms_io

@@ -6,12 +6,13 @@
 
 namespace misfit::ms_io {
 
-/// Gives the cells of an existing column that have no shape what those of a new column hold. Returns whether there were any:
-/// `set` knows nothing of it, and is to be opened anew.
+/// Fills the cells of an existing column that have no shape as the cells of a new column. Returns whether there were any: `set`
+/// does not notice it, and is to be opened anew.
 ///
-/// The index of a storage manager changes then, and casacore truncates the file or writes it piece by piece: killed meanwhile,
-/// it leaves a table that no program opens. So this is done to a table beside, of links to the files of the first one and a
-/// copy of that index, which takes the place of the first one as a whole. Throws std::runtime_error or AipsError.
+/// This changes the index of a storage manager, a file that casacore truncates and writes piece by piece: a process killed
+/// meanwhile leaves a table that no program opens. So the cells are filled in a second table beside the first one, of links to
+/// its files and a copy of that index, and the new index then replaces the old one as a whole. Throws std::runtime_error or
+/// AipsError.
 bool give_missing_cells(const casacore::MeasurementSet& set, const ModelColumn& column);
 
 }  // namespace misfit::ms_io

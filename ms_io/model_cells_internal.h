@@ -24,7 +24,7 @@ class CellColumn {
   void read(const Rows& rows, const casacore::Slicer& slice, Cells& cells) const { ms_io::read(column_, rows, slice, cells); }
   void write(const Rows& rows, const casacore::Slicer& slice, const Cells& cells);
 
-  /// Throws AipsError when a cell has none, or another.
+  /// Throws AipsError when a cell has no shape, or another.
   void require_shape(const Rows& rows, const casacore::IPosition& shape) const;
 
  private:
@@ -35,7 +35,7 @@ class CellColumn {
 /// Sums over rows of the fingerprints of their number and cells, from the first selected channel to the last one.
 struct CellChecksum {
   std::uint64_t values = 0;
-  std::uint64_t data = 0;  ///< that the model was subtracted from; 0 where it was not
+  std::uint64_t data = 0;  ///< of the data that the model was subtracted from; 0 where it was not
 
   CellChecksum& operator+=(const CellChecksum& other) {
     values += other.values;
@@ -44,9 +44,9 @@ struct CellChecksum {
   }
 };
 
-/// What goes into the cells of a block, from the first selected channel to the last one.
+/// The new cells of a block, from the first selected channel to the last one.
 struct BlockCells {
-  CellColumn::Cells values;  ///< as they are stored, where channels between are not selected; then what is to be
+  CellColumn::Cells values;  ///< as they are stored, where channels between are not selected; after form() as they are to be
   CellColumn::Cells data;    ///< that the model is subtracted from; empty where it is not
   CellChecksum checksum;
 
@@ -54,18 +54,18 @@ struct BlockCells {
   void form(const Rows& rows, const Setup& setup, const StokesVisibilities& model);
 };
 
-/// The cells that a model goes into, and those it is subtracted from. Everything throws AipsError.
+/// The cells that a model goes into, and the cells it is subtracted from. All functions throw AipsError.
 class ModelCells {
  public:
   ModelCells(const casacore::MeasurementSet& set, const ModelColumn& column);
 
-  /// The data of a block, where they are needed. Apart, since errors in them are told as such.
+  /// The data of a block, where they are needed; a function of its own, since messages tell errors in data from others.
   CellColumn::Cells data(const Rows& rows, const Setup& setup);
-  /// Its cells before a model is formed.
+  /// The cells of a block before a model is formed.
   CellColumn::Cells values(const Rows& rows, const Setup& setup);
   void write(const Rows& rows, const Setup& setup, const CellColumn::Cells& values);
 
-  /// Of what the column holds now, and the data.
+  /// The checksum of what the column holds now, and of the data.
   CellChecksum checksum(const Rows& rows, const Setup& setup);
 
  private:

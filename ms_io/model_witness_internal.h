@@ -16,7 +16,7 @@ struct Witness {
   std::uint64_t row = 0;
   std::uint64_t channel = 0;
   std::uint64_t before = 0;  ///< fingerprint of the correlations as the run found them
-  std::uint64_t after = 0;   ///< of those that it has written, or is about to; until then as before
+  std::uint64_t after = 0;   ///< of the correlations that it has written, or is about to write; until then as before
 };
 
 /// Up to 16, spread over the rows selected, of `column` as it is, or as it will be made. None where cells have no shape yet,
@@ -24,12 +24,12 @@ struct Witness {
 std::vector<Witness> choose_witnesses(const casacore::MeasurementSet& set, const ModelColumn& column,
                                       const SelectedRows& selected);
 
-/// Notes what is about to be written into `rows`: `values` correlations × channels × rows, from the first selected channel on.
-/// False where none of the witnesses is among them.
+/// Notes in witnesses the values that are about to be written into `rows`: `values` correlations × channels × rows, from the
+/// first selected channel on. False where none of the witnesses is among them.
 bool foretell(std::vector<Witness>& witnesses, const Rows& rows, const Setup& setup,
               const casacore::Array<casacore::Complex>& values);
 
-/// How many of them are neither as the run found them nor as it left them; none can be told where `set` refers to other tables.
+/// How many witnesses are neither as the run found them nor as it left them; 0 where `set` refers to other tables.
 std::size_t changed(const std::vector<Witness>& witnesses, const casacore::Table& set, const std::string& column);
 
 }  // namespace misfit::ms_io

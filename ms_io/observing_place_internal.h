@@ -9,23 +9,24 @@
 
 namespace misfit::ms_io {
 
-/// From where a set was observed. Antennas stand where POSITION is some Earth's radius from its middle, in ITRF, which it is
-/// not where it is relative to the array's centre, in another unit than it states, or no number.
+/// The place from which a set was observed. An antenna has a place if its POSITION, in ITRF, is about an Earth's radius from
+/// the Earth's middle. It is not where POSITION is relative to the array's centre, in another unit than it states, or no
+/// number.
 struct ObservingPlace {
-  /// Of the telescope, as casacore knows it by its whole name or another one, such as VLA for EVLA, unless it lies farther from
-  /// the antennas that stand than these from each other, and than 50 km; else the median of these antennas; else the middle of
-  /// the Earth. It does not depend on the order of antennas. Where OBSERVATION names several telescopes, a name that is known
-  /// decides, and otherwise antennas count that are in rows of the observation.
+  /// The telescope's position, as casacore knows it by its whole name or another one, such as VLA for EVLA, unless it lies
+  /// farther from the antennas with a place than these from each other, and than 50 km; else the median of these antennas; else
+  /// the middle of the Earth. It does not depend on the order of antennas. Where OBSERVATION names several telescopes, a name
+  /// that is known decides, and otherwise the antennas in rows of the observation.
   casacore::MPosition position;
   std::string doubt;         ///< why `position` is the middle of the Earth, in words that follow "since"; else empty
-  std::string dispute;       ///< that the telescope stands elsewhere by its name, in a sentence; else empty
+  std::string dispute;       ///< a sentence where the telescope stands elsewhere by its name; else empty
   bool of_antennas = false;  ///< whether `position` is their median
 };
 
-/// Of the telescope of a row of OBSERVATION; of none by name where there is no such row.
+/// The place of the telescope of a row of OBSERVATION; a telescope without a name where there is no such row.
 ObservingPlace observing_place(const casacore::MeasurementSet& set, int observation);
 
-/// POSITION of an antenna where it stands there, else the telescope's place; nothing where that is in doubt.
+/// POSITION of an antenna that has a place, else the telescope's place; nothing where that is in doubt.
 std::optional<casacore::MPosition> antenna_place(const casacore::MeasurementSet& set, int antenna,
                                                  const ObservingPlace& telescope);
 

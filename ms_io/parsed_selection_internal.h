@@ -20,26 +20,27 @@ struct UvRange {
   bool in_metres = true;  ///< else in wavelengths
 };
 
-/// What a selection says about rows and channels.
+/// The rows and channels of a selection.
 struct ParsedSelection {
   bool all_fields = true;
   std::set<int> fields;
   bool all_windows = true;
   std::map<int, std::set<int>> channels;  ///< of each spectral window selected
-  std::vector<int> listed_windows;        ///< those selected, as the expression lists them; empty: all
+  std::vector<int> listed_windows;        ///< the selected windows, as the expression lists them; empty: all
   std::vector<UvRange> uv;                ///< one of them must hold, unless there are none
   casacore::TableExprNode rows;           ///< true where the rest of the selection holds; null: everywhere
-  std::vector<bool> listed_rows;          ///< [row] the same in place of `rows`; empty where that tells
+  std::vector<bool> listed_rows;          ///< [row] stands for `rows`, unless it is empty
 
   bool has_field(int field) const { return all_fields || fields.count(field) > 0; }
   bool has_window(int window) const { return all_windows || channels.count(window) > 0; }
-  /// Where a window stands among those that are listed; its id where none are.
+  /// The place of a window among the listed ones; its id where none are listed.
   std::size_t place_of(int window) const;
-  bool uv_in_wavelengths() const;  ///< whether some of it is
-  /// Whether one of `uv` holds, or there are none; in wavelengths, of the reference frequency. TaQL takes 6 µs for a row, which
-  /// is why this is apart.
+  bool uv_in_wavelengths() const;  ///< whether any range is
+  /// Whether one of `uv` holds, or there are none; in wavelengths, of the reference frequency. It is a function of its own
+  /// since TaQL takes 6 µs for a row.
   bool has_uv(const double* uvw_m, double reference_frequency_hz) const;
-  /// Of the table as it was opened, whatever table its rows are stored in. Throws AipsError where they cannot be read.
+  /// Whether `rows` or `listed_rows` hold for a row of the table as it was opened, whatever table the row is stored in. Throws
+  /// AipsError where they cannot be read.
   bool has_row(std::uint64_t row) const;
 };
 

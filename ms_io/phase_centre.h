@@ -20,10 +20,10 @@ std::optional<imager::SkyDirection> parse_direction(const std::string& text);
 /// to several directions.
 imager::SkyDirection parse_phase_centre(const std::string& text, const std::string& path);
 
-/// `selection` with its visibilities phased to what `text` means: such a direction, of a field of the first of the sets at
-/// `paths` that has it; "TRACKFIELD", for what the fields of the sets follow; a planet, the Sun or the Moon by name, which goes
-/// before fields of that name; or the path of the table of an ephemeris, as CASA writes them. Throws what parse_phase_centre()
-/// does, also where that table is not as expected.
+/// `selection` with its visibilities phased to what `text` means: a direction as for parse_phase_centre(), or a field of the
+/// first of the sets at `paths` that has it; "TRACKFIELD", for what the fields of the sets follow; a planet, the Sun or the
+/// Moon by name, which goes before fields of that name; or the path of the table of an ephemeris, as CASA writes them. Throws
+/// what parse_phase_centre() does, also where that table is not as expected.
 Selection phased_to(Selection selection, const std::string& text, const std::vector<std::string>& paths);
 
 }  // namespace misfit::ms_io

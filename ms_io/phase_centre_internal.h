@@ -13,7 +13,7 @@ constexpr double same_centre_rad = 1e-12;
 /// The angle between two directions, whatever their frames; B1950 as it was in 1950.
 double separation_rad(const imager::SkyDirection& a, const imager::SkyDirection& b);
 
-/// The way of visibilities from `from` to `to`, along whose north v then runs, in the frame of `to`.
+/// The shift of visibilities from `from` to `to`, along whose north v then runs, in the frame of `to`.
 imager::PhaseShift phase_shift(const FieldCentre& from, const imager::SkyDirection& to);
 
 }  // namespace misfit::ms_io

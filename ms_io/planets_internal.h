@@ -17,11 +17,11 @@ struct PlanetPlace {
   double distance_m = 0;
 };
 
-/// By DE405 (Standish 1998, JPL IOM 312.F-98-048), or by DE200 where casacore lacks that. Throws casacore::AipsError where it
-/// has neither, or they do not reach that time.
+/// The place by DE405 (Standish 1998, JPL IOM 312.F-98-048), or by DE200 where casacore lacks DE405. Throws casacore::AipsError
+/// where casacore has neither, or they do not reach that time.
 PlanetPlace planet_place(casacore::MDirection::Types planet, double tdb_mjd);
 
-/// Lets casacore find the tables of JPL in the folder where Debian puts them, which is not the one that it looks in.
+/// Lets casacore find the tables of JPL in Debian's folder, where it does not look by itself.
 void find_planet_tables();
 
 }  // namespace misfit::ms_io

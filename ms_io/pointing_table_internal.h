@@ -21,19 +21,19 @@ struct RowTime {
   bool operator!=(const RowTime& other) const { return time_s != other.time_s || interval_s != other.interval_s; }
 };
 
-/// Where the antennas of a set pointed in the course of time, as its table POINTING says. An entry with a polynomial in time
-/// says it by that. Another is a place where the antenna stayed for the entry's INTERVAL, where that is longer than one and a
-/// half of the row's, and else a sample of its way: between two such samples the antenna goes straight on the sphere of their
-/// frame. Entries are known to reach as far from their TIME as the longer of their INTERVAL and the row's, and anywhere where
-/// their INTERVAL is not positive.
+/// Where the antennas of a set pointed in the course of time, as its table POINTING says. An entry may be a polynomial in time.
+/// If not, and its INTERVAL is longer than one and a half of the row's, it is a place where the antenna stayed for that
+/// INTERVAL; else it is a sample of the antenna's way, and between two such samples the antenna goes straight on the sphere of
+/// their frame. Entries are known to reach as far from their TIME as the longer of their INTERVAL and the row's, and anywhere
+/// where their INTERVAL is not positive.
 class PointingTable {
  public:
   /// Throws std::runtime_error where the set has no POINTING table, it has no rows, or it cannot be read.
   explicit PointingTable(const OpenSet& open_set);
   ~PointingTable();
 
-  /// In one of the frames of in_frame(). Throws std::runtime_error where the antenna has no entry, or none that reaches the
-  /// row, or where its frame turns with the Earth and it is not known where the antenna stands.
+  /// The direction, in one of the frames of in_frame(). Throws std::runtime_error where the antenna has no entry, or none that
+  /// reaches the row, or where its frame turns with the Earth and it is not known where the antenna stands.
   imager::SkyDirection at(int antenna, const RowTime& when);
 
  private:

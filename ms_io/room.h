@@ -5,8 +5,8 @@
 
 namespace misfit::ms_io {
 
-/// Throws std::runtime_error where so many bytes are not free where `path` lies: casacore ends programs, or spoils tables,
-/// whose disk is full.
+/// Throws std::runtime_error where the disk of `path` does not have so many bytes free: casacore ends programs, or spoils
+/// tables, whose disk is full.
 void require_room(const std::string& path, std::uintmax_t bytes);
 
 }  // namespace misfit::ms_io

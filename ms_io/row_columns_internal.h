@@ -32,16 +32,16 @@ class Rows {
   casacore::RefRows listed_;
 };
 
-/// What is known of the cells of an array column without a look at each.
+/// The shapes of the cells of an array column, as far as known without a look at each.
 struct CellShapes {
-  bool one = false;  ///< those that are defined have one shape
-  bool all = false;  ///< and all are defined
+  bool one = false;  ///< all cells that are defined have one shape
+  bool all = false;  ///< all cells have that shape
 };
 
 CellShapes known_shapes(const casacore::Table& table, const std::string& column);
 
-/// Keeps the tiles that a column holds in memory within 64 MiB. Without that slices of channels leave all tiles that they
-/// touched there.
+/// Keeps the tiles that a column holds in memory within 64 MiB. Without this, slices of channels leave all tiles that they
+/// touched in memory.
 void limit_tile_cache(const casacore::Table& table, const std::string& column);
 
 /// `runs` cut into pieces of at most `rows` rows.

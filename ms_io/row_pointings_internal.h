@@ -12,12 +12,12 @@ namespace misfit::ms_io {
 struct RowPointings {
   std::vector<FieldPointing> pointings;
   std::vector<NumberedRows> rows;  ///< numbered by places among the pointings, ascending
-  std::string remark;              ///< what users should know, in a sentence; mostly empty
+  std::string remark;              ///< a sentence for users; mostly empty
 };
 
-/// By POINTING, see PointingTable, where the mean of both antennas pointed. In the order of the table, a row belongs to the
-/// pointing of the row before if it pointed no farther from there than the tolerance; else to the first pointing of which that
-/// is so; else it founds one where it pointed. Rows that are flagged or of one antenna found none, and belong to that of the
+/// Groups rows by the mean direction of both antennas in POINTING, see PointingTable. In the order of the table, a row belongs
+/// to the pointing of the row before if it pointed within the tolerance of it; else to the first pointing of which that is so;
+/// else it founds one where it pointed. Rows that are flagged or of one antenna found none, and belong to the pointing of the
 /// row before. Throws what PointingTable does, and std::invalid_argument unless the tolerance is positive.
 RowPointings row_pointings(const OpenSet& open_set, const imager::SkyDirection& centre, double tolerance_rad);
 

@@ -28,7 +28,7 @@ class RowShares {
   bool whole_sets() const { return whole_sets_; }
 
  private:
-  /// Before a row of a set.
+  /// A cut before a row of a set.
   struct Cut {
     std::size_t set = 0;
     std::uint64_t row = 0;

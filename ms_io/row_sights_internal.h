@@ -10,14 +10,14 @@
 
 namespace misfit::ms_io {
 
-/// With what, and in which direction, the rows of a set were observed.
+/// Reads the sights of a set's rows: their antennas, and the directions in which they observed.
 class SightReader {
  public:
   /// Throws std::runtime_error where ANTENNA cannot be read.
   SightReader(const OpenSet& open_set, std::shared_ptr<const SightNumbers> numbers);
   ~SightReader();
 
-  /// [row]. The zenith is 0 of antennas that do not turn with it: those on other mounts than alt-azimuth. Throws
+  /// The sights, [row]. The zenith is 0 for antennas that do not turn with it, on other mounts than alt-azimuth. Throws
   /// casacore::AipsError where columns of these rows cannot be read.
   std::vector<imager::RowSight> sights(const Rows& rows);
 
@@ -27,7 +27,7 @@ class SightReader {
 };
 
 /// Position angles of the zenith [row], from north through east, seen from where each row's field points in the frame of
-/// `centre`: by these dishes turn that stand on alt-azimuth mounts. 0 of other mounts. The rows are in the order of blocks.
+/// `centre`. Dishes on alt-azimuth mounts turn by them; they are 0 for other mounts. The rows are in the order of blocks.
 /// Throws std::runtime_error where ANTENNA, FIELD or the rows' times cannot be read.
 std::vector<float> zenith_turns(const OpenSet& open_set, const imager::SkyDirection& centre);
 

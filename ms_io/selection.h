@@ -31,10 +31,10 @@ class PerSet {
 };
 
 /// Which samples of MeasurementSets are meant, in casacore's MSSelection syntax, as CASA's tasks take it; empty means all. A
-/// sample must be in each that is given. As in MSSelection, uv distances are √(u² + v²), those in wavelengths at the
+/// sample must be in each selection that is given. As in MSSelection, uv distances are √(u² + v²), in wavelengths at the
 /// REF_FREQUENCY of the spectral window, whatever the channel; where they are not finite, rows are read, to be counted, but no
 /// model is written. The ends of ranges of time and uv distance belong to them; times are rounded down to milliseconds. A time
-/// without a date has that of the first row that the rest, but for uv_range, selects.
+/// without a date has the date of the first row that all other selections, except uv_range, select.
 struct Selection {
   PerSet field = {};
   PerSet spectral_window = {};
@@ -44,29 +44,29 @@ struct Selection {
   PerSet scan = {};
   PerSet intent = {};  ///< of STATE's OBS_MODE
   PerSet observation = {};
-  /// Where the visibilities are phased to; none: where they are, which must be one direction, or one moving field.
+  /// Where the visibilities are phased to; none: they stay where they are, which must be one direction, or one moving field.
   std::optional<imager::SkyDirection> phase_centre = {};
-  std::string phase_centre_remark = "";  ///< what users should know of `phase_centre`, in a sentence; mostly empty
-  /// What becomes of fields whose phase centres move, without a phase_centre. They stay phased to themselves: what moves along
-  /// stands still, unless they turn with the Earth, which is refused. Or to what they follow, offsets of ephemerides undone, or
-  /// the Earth. Or they are shifted to where they are in the middle of their rows: the sky stands still. Several
-  /// fields that stand still themselves are then shifted to the first, and otherwise refused.
+  std::string phase_centre_remark = "";  ///< a sentence for users on `phase_centre`; mostly empty
+  /// How fields are phased whose phase centres move, without a phase_centre. about_themselves: as they are; what moves along
+  /// stands still, and fields that turn with the Earth are refused. about_targets: to what they follow, the Earth included,
+  /// with offsets of ephemerides undone. shifted_to_middle: to where they are in the middle of their rows; the sky stands
+  /// still, and several fields that do not move are shifted to the first, which the other ways refuse.
   enum class Moving { about_themselves, about_targets, shifted_to_middle };
   Moving moving = Moving::about_themselves;
-  /// What all fields follow with about_targets, whether they move or not: the name of a planet, or the path of an ephemeris;
-  /// empty: each what it is phased to.
+  /// The body that all fields follow with about_targets, whether they move or not: the name of a planet, or the path of an
+  /// ephemeris; empty: each field follows what it is phased to.
   std::string body = "";
-  /// Whether a sample of Stokes I of which one parallel hand cannot be used counts by the other, as CASA's pseudoI has it.
+  /// Whether a sample of Stokes I with one unusable parallel hand counts by the other, as in CASA's pseudoI.
   bool either_hand = false;
-  /// FITS SPECSYS of the frame in which frequencies count, see parse_spectral_frame(), or SOURCE: of what is followed, or else
-  /// of the field's ephemeris; empty: that of the data.
+  /// FITS SPECSYS of the frame in which frequencies count, see parse_spectral_frame(), or SOURCE: the frame of the body
+  /// followed, or else of the field's ephemeris; empty: the frame of the data.
   std::string spectral_frame = "";
   bool sights = false;  ///< whether blocks tell the sights of their rows, see MeasurementSet::sight_table()
-  /// With sights: where POINTING has the antennas of rows point, which are grouped to this tolerance, on-the-fly scans too;
-  /// none: where the fields of rows do.
+  /// With sights: rows point where POINTING says, on-the-fly scans too, grouped to this tolerance; none: rows point where their
+  /// fields do.
   std::optional<double> pointing_tolerance_rad = {};
 
-  /// The same with the expressions of one of the sets alone.
+  /// The selection with the expressions of one of the sets alone.
   Selection of_set(std::size_t set) const;
 };
 
@@ -77,13 +77,13 @@ struct SelectionKind {
   const char* expected;           ///< what it may be, for people
 };
 
-/// All of them.
+/// All ways to select.
 extern const std::array<SelectionKind, 8> selection_kinds;
 
 /// Throws std::invalid_argument that names the option which has neither one expression nor one for each of so many sets.
 void require_one_or_each(const Selection& selection, std::size_t sets);
 
-/// What is given, for messages: "--field '3C*' --scan '3~5'"; empty without any.
+/// The expressions given, for messages: "--field '3C*' --scan '3~5'"; empty without any.
 std::string to_text(const Selection& selection);
 
 }  // namespace misfit::ms_io

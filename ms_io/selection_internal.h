@@ -23,14 +23,14 @@ struct Run {
   std::uint64_t count = 0;
 };
 
-/// One DATA_DESC_ID of the selection: what its rows have in common.
+/// The facts that the rows of one DATA_DESC_ID of the selection share.
 struct Setup {
   int data_description = 0;
   int field = 0;                               ///< where SelectedRows::by_field; else 0
   FieldShift shift;                            ///< from where its rows are phased to
   std::map<int, std::uint64_t> rows_of_field;  ///< selected
   int spectral_window = 0;
-  std::size_t place = 0;                 ///< of the window among those that the selection lists, or among all
+  std::size_t place = 0;                 ///< of the window among the windows that the selection lists, or among all
   std::string spectral_frame;            ///< FITS SPECSYS
   std::vector<int> correlation_types;    ///< casacore's Stokes codes
   std::size_t stored_channels = 0;       ///< in a cell
@@ -60,7 +60,7 @@ struct TimeSpan {
   double middle_s() const { return first_s + (last_s - first_s) / 2; }
 };
 
-/// The selection, resolved into what is to be read.
+/// The selection, resolved into rows and channels to read.
 struct SelectedRows {
   std::vector<Setup> setups;
   bool by_field = false;          ///< whether each setup is of one field: visibilities are shifted, or go by its ephemeris
@@ -69,16 +69,16 @@ struct SelectedRows {
   std::uint64_t samples = 0;                         ///< rows × selected channels
   std::uint64_t first_row = 0;                       ///< the earliest row selected that has a time, wherever it stands
   std::map<int, std::uint64_t> first_row_of_field;   ///< the earliest, for the fields that have selected rows
-  std::map<int, TimeSpan> moving;                    ///< the fields of these whose phase centres move, or that follow what does
-  double moved_rad = 0;                              ///< the farthest that one does
-  std::optional<double> beam_rad;                    ///< see finest_beam_rad(); where it was needed
+  std::map<int, TimeSpan> moving;                    ///< the fields whose phase centres move, or that follow a moving body
+  double moved_rad = 0;                              ///< the farthest that one of them moves
+  std::optional<double> beam_rad;                    ///< see finest_beam_rad(); none where it was not needed
   std::optional<imager::SkyDirection> phase_centre;  ///< where the visibilities are shifted to
   bool follows_field = false;                        ///< instead the image moves with the field of the first row
-  bool follows_target = false;                       ///< namely with `body`, or that field's ephemeris, without offset
-  std::shared_ptr<const Body> body;                  ///< what all fields follow; null: each its own
+  bool follows_target = false;                       ///< it moves with `body`, or that field's ephemeris, without offset
+  std::shared_ptr<const Body> body;                  ///< that all fields follow; null: each field follows its own
   std::string body_name;                             ///< "JUPITER"; or the path of its ephemeris
-  std::vector<std::string> remarks;                  ///< what users should know of phase centres, in sentences
-  std::string spectral_frame;                        ///< in which frequencies count; empty: that of each window
+  std::vector<std::string> remarks;                  ///< sentences for users on phase centres
+  std::string spectral_frame;                        ///< in which frequencies count; empty: each window's own
 
   /// Whether a setup's shift depends on time.
   bool shift_moves() const {
@@ -86,7 +86,7 @@ struct SelectedRows {
   }
 };
 
-/// What the rows are for.
+/// The use of the rows.
 struct RowUse {
   std::uint64_t block_samples = 0;  ///< a block has about so many
   bool reading = true;              ///< rows whose u or v is not finite are then within all uv ranges, so that they are counted

@@ -16,7 +16,8 @@ class SetupTable {
   /// The spectral window of a DATA_DESC_ID. Throws std::runtime_error when there is no such DATA_DESC_ID or window.
   int spectral_window(int data_description) const;
 
-  /// REF_FREQUENCY of the spectral window of a DATA_DESC_ID. Throws what that does, and unless it is positive and finite.
+  /// REF_FREQUENCY of the spectral window of a DATA_DESC_ID. Throws what spectral_window() does, and where the frequency is not
+  /// positive and finite.
   double reference_frequency_hz(int data_description) const;
 
   /// The setup, with the channels selected. Throws std::runtime_error when a frequency is not positive and finite.

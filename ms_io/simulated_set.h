@@ -37,8 +37,8 @@ struct SimulatedObservation {
 
 /// UVW in metres [baseline][3] of one integration; baselines run over antenna1 < antenna2, antenna2 fastest.
 using BaselineUvw = std::function<std::vector<double>(std::size_t integration)>;
-/// Stokes I visibilities [row][channel], Jy, at the coordinates given, those of the integration of which BaselineUvw was asked
-/// last, with the sights of their rows, in which the zenith is 0.
+/// Stokes I visibilities [row][channel], Jy, at the coordinates given, of the integration that BaselineUvw was last called for,
+/// with the sights of their rows, in which the zenith is 0.
 using ExactVisibilities = std::function<std::vector<std::complex<double>>(const imager::SampleCoordinates&)>;
 
 /// Writes a new MeasurementSet at `path`, with all of the required subtables filled. WEIGHT is 1/noise² (1 without noise),

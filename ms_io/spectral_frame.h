@@ -10,7 +10,7 @@ namespace misfit::ms_io {
 /// Throws std::invalid_argument that lists them.
 std::string parse_spectral_frame(const std::string& name);
 
-/// The channels of one spectral window as another frame has them when its earliest selected row was observed.
+/// The channels of one spectral window, in another frame at the time of its earliest selected row.
 struct SpectralWindow {
   std::string set;  ///< path
   int id = 0;

@@ -21,19 +21,19 @@ std::string spectral_frame_of(int code);
 /// The code of such a frame; Undefined where casacore has none.
 casacore::MFrequency::Types spectral_frame_code(const std::string& spectral_frame);
 
-/// FITS SPECSYS of what is at rest in the source, as SelectedRows::spectral_frame asks for it.
+/// FITS SPECSYS of the source's rest frame, as in SelectedRows::spectral_frame.
 constexpr const char* source_frame = "SOURCE";
 
-/// By how much frequencies of a spectral window differ in another frame, at the place of one row of OBSERVATION and towards a
-/// direction: all by one factor, that of Doppler's shift, which changes with time. To the source's frame it is that of the
-/// velocity v at which the source recedes, √((1 + v/c)/(1 − v/c)), and that of the way to where v is measured from. The set and
-/// `selected` must outlive it.
+/// The factor between frequencies of a spectral window in another frame and its own, at the place of one row of OBSERVATION and
+/// towards a direction: the Doppler factor, which changes with time. To the source's frame it is √((1 + v/c)/(1 − v/c)) for the
+/// velocity v at which the source recedes, times the factor of the frame that v is measured in. The set and `selected` must
+/// outlive it.
 class FrameRatio {
  public:
   FrameRatio(const FrameRatio&) = delete;
   FrameRatio& operator=(const FrameRatio&) = delete;
-  /// Throws std::runtime_error, which begins with `path`, where the window's frame is not known or is that of the source, or
-  /// the source's velocity is not known.
+  /// Throws std::runtime_error, which begins with `path`, where the window's frame is not known or is the source's, or the
+  /// source's velocity is not known.
   FrameRatio(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected, const Setup& setup,
              int observation);
 

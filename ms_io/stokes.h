@@ -15,8 +15,8 @@ namespace misfit::ms_io {
 /// `used` belongs to StokesRecipe.
 using StokesTerms = std::vector<std::complex<float>>;
 
-/// Which of the two correlations of a sum Stokes I takes a sample from: both, of which each must be usable; or, where one is
-/// not, the other alone.
+/// Which of its two correlations a sample of Stokes I is formed from: both, which must both be usable; or, where one is not
+/// usable, the other alone.
 enum class Hands { both, either };
 
 /// How Stokes parameters are formed from the correlations of one polarisation setup, with
@@ -34,8 +34,8 @@ struct StokesRecipe {
 
 /// The recipe for correlations given by casacore's Stokes codes (CORR_TYPE). A Stokes parameter is taken as it is where it is
 /// stored. Throws std::runtime_error, which lists the correlations there are, when one of `wanted` cannot be formed. With
-/// Hands::either Stokes I alone is wanted, for which one of XX, YY, RR and LL is enough: what is not polarised is the same in
-/// each, and its weight is that of I from one correlation, 1/(4 σ²).
+/// Hands::either Stokes I alone is wanted, for which one of XX, YY, RR and LL is enough: unpolarised emission is the same in
+/// each, and the weight is that of I from one correlation, 1/(4 σ²).
 StokesRecipe stokes_recipe(const std::vector<int>& correlation_types, const std::vector<imager::Stokes>& wanted,
                            Hands hands = Hands::both);
 
@@ -52,14 +52,15 @@ struct StoredSamples {
   std::size_t channels = 0;
 };
 
-/// Where Stokes parameters go.
+/// The memory that Stokes parameters go to.
 struct StokesSamples {
   std::array<std::complex<float>*, 12> visibility{};  ///< [Stokes parameter][channel]
   float* weight = nullptr;                            ///< [channel]
 };
 
-/// Forms all of the recipe. Unusable samples become visibility 0 with weight 0, counted in `counts` under the first reason that
-/// applies of flagged, non-finite, zero weight; the others are counted as used. Channels are not added to `samples_read`.
+/// Forms all Stokes parameters of the recipe. Unusable samples become visibility 0 with weight 0, counted in `counts` under the
+/// first reason that applies of flagged, non-finite, zero weight; the others are counted as used. Channels are not added to
+/// `samples_read`.
 void form_stokes(const StokesRecipe& recipe, const StoredSamples& stored, const StokesSamples& formed,
                  imager::SampleCounts& counts);
 

@@ -20,15 +20,16 @@ struct StokesResponse {
   double re = 0, im = 0;
 };
 
-/// Of a correlation with one of casacore's Stokes codes; 0 for codes that are no linear, circular or Stokes product.
+/// The response of a correlation with one of casacore's Stokes codes; 0 for codes that are no linear, circular or Stokes
+/// product.
 StokesResponse stokes_response(int correlation_type);
 
-/// Of I, Q, U and V those that one of these correlations responds to.
+/// The parameters of I, Q, U and V that one of these correlations responds to.
 std::vector<imager::Stokes> seen_by(const std::vector<int>& correlation_types);
 
 /// A run of samples of one correlation.
 struct CorrelationSamples {
-  const std::complex<float>* data = nullptr;  ///< what the model is subtracted from; null: the model itself is wanted
+  const std::complex<float>* data = nullptr;  ///< the model is subtracted from these; null: the model itself is wanted
   std::complex<float>* out = nullptr;
   std::size_t stride = 1;  ///< from one sample of `data` and `out` to the next
   std::size_t count = 0;

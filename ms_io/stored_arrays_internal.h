@@ -7,16 +7,16 @@
 
 namespace misfit::ms_io {
 
-/// The file of the arrays that a storage manager of casacore does not keep among other columns, each with its shape before it.
+/// The file of arrays that a storage manager of casacore keeps apart from other columns, each with its shape before it.
 class StoredArrays {
  public:
   /// Reads its head. Throws as StoredBytes() does.
   StoredArrays(const std::string& path, ByteOrder order);
 
-  /// Throws std::runtime_error that names the file where it cannot hold a cell of the shape that the column says all have.
+  /// Throws std::runtime_error that names the file where it cannot hold a cell of the shape that the column states for all.
   void check_column(const StoredColumn& column) const;
-  /// Throws std::runtime_error that names the file where the array at a place is not within it, with its texts if it is of
-  /// those, or not of the column's shape. 0 is the place of none. Files of more than 1 GiB are left to casacore: to look at
+  /// Throws std::runtime_error that names the file where the array at a place, with its texts if it has any, is not within the
+  /// file, or not of the column's shape. Place 0 stands for no array. Files of more than 1 GiB are left to casacore: to look at
   /// each array is to read all of them.
   void check(std::int64_t place, const StoredColumn& column);
 

@@ -7,7 +7,7 @@
 
 namespace misfit::ms_io {
 
-/// Thrown where there is no file, or it ends or is not what casacore would go on to read: it will say so itself.
+/// Thrown where there is no file, or it ends early, or it is not what casacore would read: casacore will say so itself.
 struct Malformed {
   std::string path;
 };
@@ -39,9 +39,9 @@ class StoredBytes {
 
 enum class ByteOrder { big, little };
 
-/// Reads on from a place what casacore's AipsIO writes: numbers, texts, and objects that begin with their length, their type
-/// and its version. Every function throws as StoredBytes::read() does, and std::runtime_error where it reads of more than is
-/// left.
+/// Reads what casacore's AipsIO writes, from a place on: numbers, texts, and objects that begin with their length, their type
+/// and its version. Every function throws as StoredBytes::read() does, and std::runtime_error where a number states more than
+/// is left.
 class ObjectReader {
  public:
   explicit ObjectReader(StoredBytes& bytes, ByteOrder order = ByteOrder::big, std::uint64_t at = 0)
@@ -54,18 +54,18 @@ class ObjectReader {
 
   std::uint64_t number(std::size_t size);
   std::int64_t integer(std::size_t size);
-  /// A number of things that take as many bytes each, at least.
+  /// A number of things that take at least `bytes_each`.
   std::uint64_t count(std::size_t size, const std::string& things, std::size_t bytes_each);
   std::string text();
-  /// Of any length.
+  /// Skips a text of any length.
   void skip_text() { skip(count(4, "letters", 1)); }
 
-  /// The word that all of a file's objects follow.
+  /// Reads the word that stands before all objects of a file.
   void magic();
-  /// Begins an object of any type, which it returns; of the type given, or throws Malformed, and returns its version.
+  /// Begins an object of any type, and returns its type; or of the type given, and returns its version, or throws Malformed.
   std::string object();
   std::uint64_t object(const std::string& type);
-  /// Ends the object that began at a place: throws Malformed where that is not of the length that it says.
+  /// Ends the object that began at a place: throws Malformed where it has another length than it states.
   void end(std::uint64_t begin);
   /// An IPosition.
   std::vector<std::int64_t> lengths();
@@ -78,8 +78,8 @@ class ObjectReader {
   std::uint64_t at_;
 };
 
-/// The product of lengths, 0 of none; throws std::runtime_error that names `things` where one is negative, or where that of
-/// those that are not 0 is beyond what casacore counts.
+/// The product of lengths, 0 of none; throws std::runtime_error that names `things` where one is negative, or where the product
+/// of the lengths that are not 0 is beyond what casacore counts.
 double product(const std::vector<std::int64_t>& lengths, const StoredBytes& of, const std::string& things);
 
 /// A number as people read it, of any size.

@@ -10,7 +10,7 @@
 
 namespace misfit::ms_io {
 
-/// Bits that a value of one of casacore's DataType takes in a file; of a text, those of the length before it.
+/// Bits that a value of one of casacore's DataType takes in a file; for a text, the bits of the length before it.
 std::uint64_t bits_of(std::uint64_t data_type);
 
 /// Reads a type; throws std::runtime_error where casacore has no such.
@@ -24,8 +24,8 @@ void skip_value(ObjectReader& in, casacore::DataType type);
 void skip_array(ObjectReader& in, casacore::DataType type);
 
 /// Reads a record, with those in it, as casacore does, and returns the names of the tables that it holds. Throws as
-/// ObjectReader does, and std::runtime_error where it tells of types that no record has, over which casacore ends the program,
-/// or of records that lie in each other beyond any use.
+/// ObjectReader does, and std::runtime_error where it states types that no record has, over which casacore ends the program, or
+/// records nested beyond any use.
 std::vector<std::string> read_record(ObjectReader& in);
 
 }  // namespace misfit::ms_io

@@ -22,8 +22,8 @@ struct SubtractedModel {
 /// since.
 std::vector<SubtractedModel> subtracted_models(const casacore::MeasurementSet& set, const std::string& column);
 
-/// Replaces what the set says of `column`. Of no models it is a column of data, or of predictions. It holds until another
-/// program changes all witnesses, or for ever where there are none. Throws std::runtime_error that names the file.
+/// Replaces the record of `column`; without models the record is removed. A record holds until another program changes all
+/// witnesses, or for ever where there are none. Throws std::runtime_error that names the file.
 void write_subtracted_models(const casacore::MeasurementSet& set, const std::string& column,
                              const std::vector<SubtractedModel>& models, const std::vector<Witness>& witnesses);
 

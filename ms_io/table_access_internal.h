@@ -14,7 +14,7 @@ namespace misfit::ms_io {
 /// `message` with every run of white space, line ends included, as one blank.
 std::string one_line(const std::string& message);
 
-/// What casacore says of a failure, on one line, with the system's reason where a disk failed it and it says nothing of that.
+/// casacore's reason for a failure, on one line, with the system's reason where a disk failed and casacore does not say so.
 std::string reason_of(const casacore::AipsError& error);
 
 /// The result of `action`, with casacore's exceptions turned into std::runtime_error("`doing`: reason") of one line.
@@ -39,7 +39,7 @@ enum class Access { read, update };
 /// cannot be written but `access` asks for it.
 casacore::MeasurementSet open_measurement_set(const std::string& path, Access access);
 
-/// A table that is written when it is flushed alone, not when it is closed, whoever else has it open.
+/// A table that is written only when it is flushed, not when it is closed, whoever else has it open.
 class UnwrittenTable : public casacore::Table {
  public:
   explicit UnwrittenTable(const casacore::Table& table) : casacore::Table(table) { baseTabPtr_p->doNotWrite(); }
@@ -48,7 +48,7 @@ class UnwrittenTable : public casacore::Table {
 /// `name`, with the short names data, corrected and model spelt out.
 std::string column_name(const std::string& name);
 
-/// The same in `table`, where auto is CORRECTED_DATA if there is such a column, else DATA.
+/// The name of a column in `table`, where auto is CORRECTED_DATA if there is such a column, else DATA.
 std::string column_name(const casacore::Table& table, const std::string& name);
 
 /// Throws std::runtime_error, which lists the columns there are, unless `column` holds complex visibilities.

@@ -7,8 +7,9 @@
 namespace misfit::ms_io {
 
 /// The texts of casacore's StandardStMan, which lie one after the other in buckets of their own, and go on in the next where
-/// one ends. Each of these begins with four numbers: the second is how many bytes of it are used, the fourth the bucket after
-/// it. Every function throws std::runtime_error that names the file where they go on in no bucket, or beyond what one has.
+/// one ends. Each bucket begins with four numbers: the second is how many bytes of it are used, the fourth the bucket after it.
+/// Every function throws std::runtime_error that names the file where texts go on in no bucket, or beyond the used bytes of
+/// one.
 class TextBuckets {
  public:
   TextBuckets(StoredBytes& bytes, const Buckets& buckets) : bytes_(bytes), buckets_(buckets) {}

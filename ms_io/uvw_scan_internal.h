@@ -14,8 +14,9 @@ imager::UvwReach scan_uvw(const OpenSet& open_set, ReachOf rows);
 /// See MeasurementSet::visit_coordinates().
 void visit_uvw(const OpenSet& open_set, const std::function<void(const imager::SampleCoordinates&)>& visit);
 
-/// 1 / √(u² + v² + w²) of the sample where that is largest, in wavelengths, among rows of two antennas that are not flagged; 0
-/// where it is 0 everywhere. UVW tell, since these are what is imaged: antennas' POSITION may be in another unit, or absent.
+/// 1 / √(u² + v² + w²), in wavelengths, of the sample with the longest baseline, among rows of two antennas that are not
+/// flagged; 0 where all baselines are 0. It is taken from UVW, which is imaged: antennas' POSITION may be in another unit, or
+/// absent.
 double finest_beam_rad(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected);
 
 }  // namespace misfit::ms_io

@@ -10,13 +10,13 @@ namespace misfit::ms_io {
 
 /// Hands the values of a column to the system, so that they outlive this process.
 ///
-/// Flushing or closing a table, casacore truncates the header of a tiled column and writes it anew, though nothing in it has
-/// changed: killed between the two, it leaves a table that no program opens. So the tables of a tiled column are not flushed,
-/// their tiles are, and as long as all cells have a shape no more needs to be.
+/// When a table is flushed or closed, casacore truncates the header of a tiled column and writes it anew, though nothing in it
+/// has changed: a process killed between the two leaves a table that no program opens. So only the tiles of a tiled column are
+/// flushed, not its tables: that is enough as long as all cells have a shape.
 class ValueFlush {
  public:
-  /// The rows of `set` may be those of several tables. Whatever else was changed in them is to be flushed before: they are
-  /// closed as they lie on disk then.
+  /// The rows of `set` may be those of several tables. Other changes in these tables must be flushed before: they are closed as
+  /// they then lie on disk.
   ValueFlush(const casacore::Table& set, const std::string& column);
   /// Throws AipsError.
   void operator()();

@@ -12,16 +12,16 @@ namespace misfit::ms_io {
 
 struct SightNumbers;
 
-/// A MeasurementSet with what is to be read from it. It lives as long as a stream reads it.
+/// A MeasurementSet and the selection to read from it. It lives as long as a stream reads it.
 struct OpenSet {
   std::string path;
   std::size_t place = 0;  ///< among the sets that are named
   std::string data_column;
   casacore::MeasurementSet set;
   SelectedRows selected;
-  std::vector<StokesRecipe> recipes;          ///< [setup]
-  FileStates files;                           ///< before it was opened
-  std::shared_ptr<FilledData> filled;         ///< what was read, by this set and parts of it; null without a data column
+  std::vector<StokesRecipe> recipes;   ///< [setup]
+  FileStates files;                    ///< before it was opened
+  std::shared_ptr<FilledData> filled;  ///< learned from all that this set and parts of it read; null without a data column
   std::shared_ptr<SightNumbers> sights = {};  ///< filled once all sets are open; null where blocks do not tell sights
 };
 

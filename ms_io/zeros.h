@@ -13,7 +13,7 @@ struct SelectionPart {
   std::uint64_t rows = 0;
 };
 
-/// Where the data of a selection are 0 in all rows that can be used, as where a column was never filled.
+/// The parts of a selection whose data are 0 in all usable rows, as in a column that was never filled.
 struct Zeros {
   bool everywhere = false;
   std::vector<SelectionPart> parts;  ///< whole windows first, then whole fields, then others; none where it is everywhere
