@@ -10,8 +10,8 @@ namespace misfit::imager {
 struct ArrayCleanOptions {
   ArrayTransformOptions transform;    ///< pixels are square, and not divided by n
   CleanOptions clean;                 ///< in the threads of `transform`
-  DeconvolverChoice deconvolver;      ///< as well
-  Strided<const double> start_model;  ///< [x][y], Jy/pixel, of points; none: CLEAN begins without
+  DeconvolverChoice deconvolver;      ///< in the threads of `transform`
+  Strided<const double> start_model;  ///< [x][y], Jy/pixel, of points; none: CLEAN begins without a model
 };
 
 /// Images [x][y] of a CLEAN run; NaN beyond the horizon.

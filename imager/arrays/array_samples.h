@@ -21,7 +21,7 @@ struct ArrayCoordinates {
   Strided<const double> uvw_m;       ///< [row][3], metres
   std::vector<double> frequency_hz;  ///< [channel]
   Strided<const std::uint8_t> mask;  ///< [row][channel], 0: left out; none: all count
-  double u_sign = 1;                 ///< ±1, that coordinates are multiplied by
+  double u_sign = 1;                 ///< ±1, the factor of u
   double v_sign = 1;
   double w_sign = 1;  ///< 0: w is taken as 0
 
@@ -57,9 +57,9 @@ void check_coordinates(const ArrayCoordinates& at);
 /// How far rows reach that are not masked and whose UVW is finite, in wavelengths of the highest frequency.
 UvwReach reach_of(const ArrayCoordinates& at, int threads);
 
-/// How samples of an array become those of a block.
+/// How samples of an array become samples of a block.
 struct ArrayBlockOptions {
-  double uv_factor = 1;  ///< that u and v are multiplied by, for an image whose pixels are as much smaller
+  double uv_factor = 1;  ///< factor of u and v, for an image whose pixels are smaller by this factor
   int threads = 1;
 };
 
@@ -79,15 +79,15 @@ struct ArrayValues {
 template <typename Real>
 void check_values(const ArrayCoordinates& at, const ArrayValues<Real>& values);
 
-/// Visibilities of a block, as they lie in the array where that can be.
+/// Visibilities of a block, without a copy where they can stay in the array.
 template <typename Real>
 struct ValuesOfBlock {
   const std::complex<Real>* visibility = nullptr;
-  std::vector<std::complex<Real>> own;  ///< what `visibility` points to where it is not the array
+  std::vector<std::complex<Real>> own;  ///< `visibility` points to these unless it points to the array
 };
 
-/// The values of the same rows as `block` has. Weights that are single, and none negative, are left to the block; else values
-/// are multiplied by them.
+/// The values of the rows of `block`. Weights of single precision, none of which is negative, go into the block; otherwise
+/// values are multiplied by them.
 template <typename Real>
 ValuesOfBlock<Real> values_of(const ArrayValues<Real>& values, RowsOfArray rows, VisibilityBlock& block, int threads);
 

@@ -8,8 +8,8 @@ namespace misfit::imager {
 template <typename Real>
 class ArraySource : public VisibilitySource {
  public:
-  /// What it is made of must outlive it. Throws std::invalid_argument as check_values does; so do its blocks for weights that
-  /// are negative, and values that count and are not finite.
+  /// The arguments must outlive it. Throws std::invalid_argument as check_values does; so do its blocks for weights that are
+  /// negative, and values that count and are not finite.
   ArraySource(const ArrayCoordinates& at, const ArrayValues<Real>& values, const ArrayBlockOptions& options);
 
   std::unique_ptr<BlockStream> open() const override;

@@ -24,12 +24,12 @@ struct ArrayImage {
 struct ArrayTransformOptions {
   ArrayImage image;
   double accuracy = 1e-6;      ///< ε: ‖I − I_DFT‖₂ ≤ ε ‖I_DFT‖₂, see ArrayTransform
-  bool divide_by_n = false;    ///< whether pixels are divided by n, on their way in or out; where w is taken as 0, n is 1
+  bool divide_by_n = false;    ///< whether pixels are divided by n, in images and models; where w is taken as 0, n is 1
   double least_padding = 1.1;  ///< bounds of FFT size over image size
   double most_padding = 2.6;
   kernels::KernelFamily kernel = kernels::kernel_family("least-misfit");
   int kernel_width = 0;                ///< cells along each axis of u and v; 0: as narrow as the accuracy allows
-  std::optional<Precision> precision;  ///< of gridding and FFTs; where none is given, single if that does
+  std::optional<Precision> precision;  ///< of gridding and FFTs; none: single if that is enough
   int threads = 1;                     ///< 0: all
 };
 
@@ -39,17 +39,17 @@ struct ArrayAdjoint {
   double expected_error = 0;  ///< RMS over the image's own RMS: above the accuracy where the data cancel
 };
 
-/// The transform of visibilities in arrays and its adjoint, ArrayCoordinates' equation and the sum that ArrayAdjoint has. The
-/// accuracy is kept relative to what data, or pixels, of random phases give; the plan depends on the options and coordinates
-/// alone, so that both ways are linear, and each the other's adjoint up to rounding, which the plan has. Samples beyond 1/(2
-/// pixel) count: pixels are points. Pixels beyond the horizon are 0, and not looked at in a model.
+/// The transform of visibilities in arrays and its adjoint: ArrayCoordinates' equation, and the sum in ArrayAdjoint. The
+/// accuracy is relative to data, or pixels, of random phases. The plan depends on the options and coordinates alone, so that
+/// both ways are linear, and each is the other's adjoint up to the plan's rounding. Samples beyond 1/(2 pixel) count: pixels
+/// are points. Pixels beyond the horizon are 0, and not looked at in a model.
 class ArrayTransform {
  public:
   /// `at` must outlive this. Throws std::invalid_argument as check_coordinates and plan_gridding do, and for images without
   /// pixels.
   ArrayTransform(const ArrayTransformOptions& options, const ArrayCoordinates& at);
 
-  /// Without decisions where every pixel lies beyond the horizon.
+  /// The plan; it has no decisions where every pixel lies beyond the horizon.
   const GriddingPlan& plan() const { return plan_; }
   /// Throws std::invalid_argument where shapes differ, or a visibility that counts is not finite.
   template <typename Real>
@@ -73,10 +73,10 @@ class ArrayTransform {
   std::unique_ptr<Transform> transform_;  ///< null where every pixel lies beyond the horizon
 };
 
-/// The plan of such a transform, and of a PSF where that is made besides.
+/// The plan of such a transform, and of a PSF if one is made besides.
 GriddingPlan plan_of(const ArrayTransformOptions& options, const ArrayCoordinates& at, bool with_psf = false);
 
-/// What was decided for such a transform, and why. Axes are the grid's: u stands for y's, v for x's.
+/// The decisions for such a transform, and their reasons. Axes are the grid's: its u is along y, its v along x.
 Plan decisions_of(const GriddingPlan& plan);
 
 }  // namespace misfit::imager

@@ -6,13 +6,13 @@
 
 namespace misfit::imager {
 
-/// Directions as they lie about an axis, by true angles: those of dishes that point there.
+/// Directions about an axis, by true angles, as dishes that point along the axis have them.
 class AxisFrame {
  public:
   /// The frame of an axis as a phase centre of this declination sees it. About a pole, north is where the image has it.
   AxisFrame(DirectionCosines axis, double phase_centre_dec_rad);
 
-  /// As the phase centre sees it.
+  /// The axis, as seen from the phase centre.
   DirectionCosines axis() const { return {axis_.l, axis_.m}; }
   /// sin θ of the angle θ between a direction and the axis; 2 where the direction is farther away than 90°, and NaN where it
   /// lies beyond the horizon of the phase centre.

@@ -13,8 +13,8 @@ struct Beam {
 
 /// The pixels of a PSF that a beam is fitted to.
 enum class BeamRegion {
-  /// What is connected to the centre above 0.35 of its height, CASA tclean's choice: the fit turns with the PSF. Where that is
-  /// fewer than 30 pixels, the points between them too, so that the cell may be coarse; see main_lobe.h.
+  /// The pixels above 0.35 of the centre's height that are connected to it, CASA tclean's choice: the fit turns with the PSF.
+  /// Where these are fewer than 30 pixels, points between them are fitted too, so that the cell may be coarse; see main_lobe.h.
   main_lobe,
   /// The pixels to the north and west alone, eight times as far as the main lobe reaches. WSClean 3.1 fits these, since its
   /// unsigned offsets put the other three quadrants at infinity, and no lobe or box about the centre gives its beams; the fit
@@ -39,7 +39,7 @@ double beam_misfit(const Image& psf, const Beam& beam, double cell_rad);
 /// std::invalid_argument when an axis of the beam or the cell is not positive.
 Image convolve_with_beam(const Image& model, const Beam& beam, double cell_rad, int threads);
 
-/// What CLEAN leaves of a plane, of one shape.
+/// CLEAN's images of a plane, of one shape.
 struct CleanedPlane {
   const Image& model;     ///< Jy/pixel
   const Image& residual;  ///< Jy/beam

@@ -19,20 +19,20 @@ class BeamTables {
   using Level = std::function<double(const double* value)>;
   using Visit = std::function<void(std::size_t pixel, const double* value)>;
 
-  /// As far from the axis as `level` has not fallen to `limit`; of patterns that are not round also no farther than they are
-  /// known.
+  /// The tables reach as far from the axis as `level` has not fallen to `limit`; for patterns that are not round, also no
+  /// farther than they are known.
   BeamTables(const PrimaryBeam& beam, const std::vector<Factor>& factors, double limit, const Level& level, int threads);
 
-  /// Calls visit(pixel, value [factor]) for all pixels of an image within. Several threads do.
+  /// Calls visit(pixel, value [factor]) for all pixels of an image within the tables, from several threads.
   void for_each_pixel(DirectionCosines axis, const ImageGeometry& geometry, int threads, const Visit& visit) const;
 
  private:
   void make_round(const PrimaryBeam& beam, const std::vector<Factor>& factors, double limit, const Level& level, int threads);
   void make_turned(const PrimaryBeam& beam, const std::vector<Factor>& factors, double limit, const Level& level, int threads);
 
-  std::vector<RadialTable> radial_;  ///< [factor], of round beams
-  std::vector<PolarTable> polar_;    ///< [factor], of others
-  std::optional<LobeEdge> edge_;     ///< of others
+  std::vector<RadialTable> radial_;  ///< [factor], for round beams
+  std::vector<PolarTable> polar_;    ///< [factor], for other beams
+  std::optional<LobeEdge> edge_;     ///< for other beams
 };
 
 }  // namespace misfit::imager

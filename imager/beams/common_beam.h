@@ -6,10 +6,10 @@
 
 namespace misfit::imager {
 
-/// An ellipse that encloses all of `beams`, so that images with these can be brought to one resolution; of the least area of
-/// all such ellipses, to a thousandth. Frank–Wolfe steps towards the Löwner ellipse (Khachiyan 1996, Math. Oper. Res. 21, 307),
-/// and what they leave outside at the end is enclosed by a larger one of the same shape. Throws std::invalid_argument where
-/// there are no beams, or one has an axis that is not positive.
+/// An ellipse that encloses all of `beams`, so that images with these can be brought to one resolution; its area is the least
+/// there is, to a thousandth. Frank–Wolfe steps lead towards the Löwner ellipse (Khachiyan 1996, Math. Oper. Res. 21, 307), and
+/// the last ellipse is enlarged to enclose all. Throws std::invalid_argument where there are no beams, or one has an axis that
+/// is not positive.
 Beam common_beam(const std::vector<Beam>& beams);
 
 }  // namespace misfit::imager

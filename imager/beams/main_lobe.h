@@ -22,13 +22,13 @@ struct MainLobe {
   int reach = 0;     ///< whole pixels from the centre to the farthest sample's row or column
 };
 
-/// The pixels of the main lobe. One of fewer than 30 is sampled 12 times as finely along each axis instead: a PSF has no more
-/// than |u|, |v| ≤ ½ turn per pixel, so that
+/// The pixels of the main lobe. A lobe of fewer than 30 pixels is sampled 12 times as finely along each axis instead: a PSF has
+/// no more than |u|, |v| ≤ ½ turn per pixel, so that
 ///   PSF(x, y) = Σ psf[r][c] sinc(x − c) sinc(y − r),  sinc(t) = sin(πt)/(πt),
 /// and where all weights are positive it falls no faster than cos(π(|x| + |y|)), which leaves at least 41 samples. The sum ends
-/// at W = 511 pixels from the centre or the image's border; NaN counts as 0. Its end changes what a point of the uv plane adds,
-/// along each axis, by at most 2 / (π (W + 1 − |x|) cos πu) of it: summation by parts. Where the finer lobe goes on for 32
-/// pixels, or out of the image, the samples are the pixels after all.
+/// at W = 511 pixels from the centre or the image's border; NaN counts as 0. Ending it changes the contribution of a point of
+/// the uv plane, along each axis, by at most 2 / (π (W + 1 − |x|) cos πu) of it: summation by parts. Where the finer lobe goes
+/// on for 32 pixels, or out of the image, the samples are the pixels.
 MainLobe main_lobe(const Image& psf);
 
 }  // namespace misfit::imager

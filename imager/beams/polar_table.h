@@ -9,8 +9,8 @@ namespace misfit::imager {
 /// A function of the direction beside an axis, by sin θ and position angle.
 using PolarFunction = std::function<double(double sine, double angle_rad)>;
 
-/// Such a function from its axis to a radius, at points of radii and angles, between which polynomials through four points each
-/// way are taken: right to 1e-5 for beams that have no finer detail than their main lobe.
+/// A PolarFunction from its axis to a radius, tabulated at radii and angles, with polynomials through four points each way
+/// between them: right to 1e-5 for beams that have no finer detail than their main lobe.
 class PolarTable {
  public:
   static constexpr int radii = 256, angles = 180;
@@ -18,7 +18,7 @@ class PolarTable {
   PolarTable() = default;
   PolarTable(double reach, int threads, const PolarFunction& function);
 
-  /// At sin θ up to the reach.
+  /// The value at sin θ up to the reach.
   double operator()(double sine, double angle_rad) const;
   double reach() const { return reach_; }
 
@@ -35,7 +35,7 @@ class PolarTable {
 /// Where a lobe about an axis ends, by position angle: where a function first falls to a level.
 class LobeEdge {
  public:
-  /// Looks for it in steps of sin θ as far as `farthest`, where it ends at the latest.
+  /// Looks for the edge in steps of sin θ up to `farthest`, where the lobe ends at the latest.
   LobeEdge(double level, double step, double farthest, const PolarFunction& function);
 
   double farthest() const;

@@ -20,10 +20,10 @@ struct FittedBand {
   std::vector<BeamFit> fits;  ///< by frequency
 };
 
-/// How beams are had at frequencies between those of a band's fits.
+/// How beams follow at frequencies between those of a band's fits.
 enum class BetweenFits {
-  nearest,       ///< the nearest fit's
-  interpolated,  ///< voltages at the same x, in proportion to the frequency; beyond the first and last fit, theirs
+  nearest,       ///< from the nearest fit
+  interpolated,  ///< linearly in frequency, by voltages at the same x; beyond the first and last fit, from that fit
 };
 
 /// Beams of a telescope by receiver, as power or its reciprocal was fitted.
@@ -36,7 +36,7 @@ struct FittedBeams {
 };
 
 /// Main lobes of fits: each ends where its power is first 0, or least, or `farthest` away; beyond that the voltage is 0. At a
-/// frequency of no band it is that of the nearest band, with a doubt.
+/// frequency of no band the nearest band's beam is taken, with a doubt.
 Pattern polynomial_pattern(const FittedBeams& beams);
 
 /// The VLA's since 2010, 224 MHz to 50 GHz (Perley 2016, EVLA Memo 195).

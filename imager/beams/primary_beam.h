@@ -8,7 +8,7 @@
 
 namespace misfit::imager {
 
-/// What part of an image pairs of two dishes make at a frequency.
+/// The part of an image that pairs of two dishes make at a frequency.
 struct BeamShare {
   Pattern one;
   Pattern other;
@@ -17,13 +17,13 @@ struct BeamShare {
   double turn_rad = 0;  ///< where the zenith is, from north through east, for patterns that are not round
 };
 
-/// Vₒₙₑ Vₒₜₕₑᵣ of the two, of patterns that are not round the mean over position angles, at an angle θ ≤ 90° from the axis, of
-/// which `sine` is sin θ.
+/// Vₒₙₑ Vₒₜₕₑᵣ of the two at an angle θ ≤ 90° from the axis, of which `sine` is sin θ; for patterns that are not round, the
+/// mean over position angles.
 double power(const BeamShare& share, double sine);
 
-/// The power that an array sees of a source off axis, relative to the same on axis: the mean of Vₒₙₑ Vₒₜₕₑᵣ over all that make
-/// the image, by their weights. A source's dirty image is its flux times this, and so is what CLEAN finds. Patterns that are
-/// not round are turned as the zenith was.
+/// The power that an array sees of a source off axis, relative to the same on axis: the mean of Vₒₙₑ Vₒₜₕₑᵣ over all pairs that
+/// make the image, by their weights. A source's dirty image is its flux times this, and so are its CLEAN components. Patterns
+/// that are not round are turned as the zenith was.
 class PrimaryBeam {
  public:
   /// Shares of frequencies less than `apart` of themselves from each other may be taken together, at their mean, which changes
@@ -33,7 +33,7 @@ class PrimaryBeam {
   explicit PrimaryBeam(const std::vector<BeamShare>& shares, double apart = 1e-3);
 
   bool is_round() const;
-  /// At an angle θ ≤ 90° from the axis, of which `sine` is sin θ; the mean over position angles.
+  /// The power at an angle θ ≤ 90° from the axis, of which `sine` is sin θ; the mean over position angles.
   double power(double sine) const;
   /// sin θ of where it first falls to `level`, which is above 0 and below 1; 1 where it does not.
   double sine_at(double level) const;
@@ -44,10 +44,10 @@ class PrimaryBeam {
   /// The step of tables in sin θ, of which the narrowest main lobe has about 60.
   double step() const { return 0.02 * narrowest_; }
 
-  /// sin θ to which all patterns are known in all directions, of those that are not round.
+  /// sin θ up to which all patterns that are not round are known in all directions.
   double known_sine() const;
 
-  const std::vector<BeamShare>& shares() const { return shares_; }  ///< as taken together; the weights add up to 1
+  const std::vector<BeamShare>& shares() const { return shares_; }  ///< taken together; the weights add up to 1
   double apart() const { return apart_; }
 
  private:
@@ -67,10 +67,10 @@ struct BeamOnImage {
 void require_limit(const BeamOnImage& view);
 
 /// The beam in each pixel, by the true angle between it and the axis. NaN beyond where it first falls to the limit, sidelobes
-/// included, whose shape no simple model has, and beyond the horizon. Right to 1e-9, of patterns that are not round 1e-5.
+/// included, whose shape no simple model has, and beyond the horizon. Right to 1e-9; to 1e-5 for patterns that are not round.
 Image primary_beam_image(const PrimaryBeam& beam, const ImageGeometry& geometry, const BeamOnImage& view);
 
-/// The image with each pixel divided by the beam's; NaN where that is.
+/// The image with each pixel divided by the beam's; NaN where the beam is.
 Image corrected(const Image& image, const Image& beam);
 
 }  // namespace misfit::imager

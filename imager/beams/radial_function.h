@@ -24,13 +24,13 @@ class RadialTable {
  public:
   RadialTable(double reach, int threads, const RadialFunction& function);
 
-  /// Which points count at a radius, and by how much: the same in all tables of one reach.
+  /// The points that count at a radius, and their weights: the same in all tables of one reach.
   struct Place {
     int cell;
     std::array<double, 4> weight;  ///< of the points before the cell, at both its ends, and behind it
   };
 
-  /// Where a direction lies whose sin θ is the reach at most.
+  /// The place of a direction whose sin θ is the reach at most.
   Place place(double sine) const {
     const double at = sine / step();
     const int cell = std::min(static_cast<int>(at), points - 1);
@@ -58,7 +58,8 @@ class RadialTables {
   /// Writes the values of all functions.
   using Functions = std::function<void(double sine, double* values)>;
 
-  /// `detail` times as many points as a RadialTable has, for functions that have so much more of it than a primary beam.
+  /// Tabulates `detail` times as many points as a RadialTable, for functions with `detail` times as much detail as a primary
+  /// beam.
   RadialTables(double reach, int threads, std::size_t count, const Functions& functions, double detail = 1);
 
   std::size_t count() const { return count_; }
@@ -85,7 +86,7 @@ void for_each_off_axis(double reach, DirectionCosines axis, const ImageGeometry&
                        const std::function<void(std::size_t pixel, double sine, double angle_rad)>& visit);
 
 /// Calls visit(pixel, sin θ) for all pixels of an image whose true angle θ from `axis`, a direction seen from the phase centre,
-/// has a sine of `reach` at most and is below 90°; pixels beyond the horizon are none of these.
+/// has a sine of `reach` at most and is below 90°, except pixels beyond the horizon.
 void for_each_within(double reach, DirectionCosines axis, const ImageGeometry& geometry, int threads,
                      const std::function<void(std::size_t pixel, double sine)>& visit);
 

@@ -23,27 +23,28 @@ struct PairBeam {
   double power(DirectionCosines at, double frequency_hz) const;
 };
 
-/// The sources as they seem to the pair at a frequency; Gaussians as at their middle.
+/// The sources as they appear to the pair at a frequency; Gaussians are scaled as at their middle.
 std::vector<Source> seen_by(const PairBeam& beam, std::vector<Source> sources, double frequency_hz);
 
-/// From what is known of rows to how they see.
+/// Finds how rows see the sky, from the antennas and fields in their sights.
 class RowBeams {
  public:
   /// Rows that see alike.
   struct Group {
     PairBeam beam;
-    int field = 0;  ///< that these rows have
+    int field = 0;  ///< of these rows
     std::vector<std::size_t> rows;
   };
 
-  /// Patterns [antenna], null of those that no row has, and frames about where antennas pointed [field], of whatever numbers
-  /// rows have.
+  /// Patterns [antenna], null for antennas that no row has, and frames about where antennas pointed [field], by the numbers in
+  /// rows' sights.
   RowBeams(std::vector<Pattern> of_antenna, std::vector<AxisFrame> of_field)
       : of_antenna_(std::move(of_antenna)), of_field_(std::move(of_field)) {}
 
-  /// In the order in which their first rows come. Where patterns are not round, rows see alike whose zeniths differ by less
-  /// than `turn_rad`; 0: that are the same. Throws std::invalid_argument where coordinates come without the sights of their
-  /// rows, std::runtime_error that names an antenna without a pattern, std::out_of_range for fields that it was not given.
+  /// The groups in the order of their first rows. Where patterns are not round, rows see alike if their zeniths differ by less
+  /// than `turn_rad`; 0: if their zeniths are the same. Throws std::invalid_argument where coordinates come without the sights
+  /// of their rows, std::runtime_error that names an antenna without a pattern, std::out_of_range for fields that it was not
+  /// given.
   std::vector<Group> groups(const SampleCoordinates& at, double turn_rad = 0) const;
 
   const std::vector<Pattern>& of_antennas() const { return of_antenna_; }

@@ -12,8 +12,8 @@ namespace misfit::imager {
 /// between half-power points times the frequency.
 Pattern cosine_tapered_pattern(double width_arcmin_ghz);
 
-/// V = cos³(β θ ν) down to its first null, with β of the fit that holds at a frequency; below `change_hz` that is `beta_low`,
-/// in degrees for each degree and MHz. WSRT's (the NEWSTAR manual; CASA, PBMath).
+/// V = cos³(β θ ν) down to its first null. β is `beta_low` below `change_hz` and `beta_high` above, in degrees for each degree
+/// and MHz. WSRT's (the NEWSTAR manual; CASA, PBMath).
 Pattern cosine_cubed_pattern(double beta_low, double beta_high, double change_hz);
 
 /// A power that is a Gaussian, down to a thousandth of the peak: its width between half-power points is so many times λ over

@@ -18,15 +18,15 @@ struct BeamModel {
   std::string doubt_at(double frequency_hz) const { return doubt.empty() ? pattern->doubt(frequency_hz) : doubt; }
 };
 
-/// Antennas that have no beam which a dish describes.
+/// Thrown for antennas whose beam is not that of a dish.
 struct NoSimpleBeam : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Of antennas of a telescope that is known, the beam that was fitted to its measurements, or that CASA takes; of others, that
-/// of a dish of their own diameter, uniformly lit, with a doubt. Throws NoSimpleBeam, naming the telescope and the reason, for
-/// stations and tiles of dipoles, cylinders and dishes that do not track, and for antennas that are not known and whose
-/// diameter is none that a dish has. Names count as CASA writes them, whatever their capitals, blanks and dashes.
+/// The beam of antennas. For a known telescope it is the beam fitted to measurements, or the one that CASA takes; for others it
+/// is the beam of a uniformly lit dish of their own diameter, with a doubt. Throws NoSimpleBeam, naming the telescope and the
+/// reason, for stations and tiles of dipoles, cylinders and dishes that do not track, and for unknown antennas whose diameter
+/// no dish has. Names are CASA's, whatever their capitals, blanks and dashes.
 BeamModel beam_model(const AntennaSort& antennas);
 
 /// The beam that a user asks for by name in place of the antennas' own: a telescope that is known, whatever the antennas are;

@@ -5,23 +5,24 @@
 
 namespace misfit::imager {
 
-/// The voltage that a sort of dishes gives of a source off axis, over that of the same source on axis: signed, 1 on the axis.
-/// What a pair of dishes sees is the product of their two.
+/// The voltage of a sort of dishes from a source off axis, over the voltage from the same source on axis: signed, 1 on the
+/// axis. A pair of dishes sees the product of its two voltages.
 class VoltagePattern {
  public:
   virtual ~VoltagePattern() = default;
 
-  /// At an angle θ ≤ 90° from the axis, of which `sine` is sin θ. Of a pattern that is not round, the root of its mean power
-  /// at this θ.
+  /// The voltage at an angle θ ≤ 90° from the axis, of which `sine` is sin θ; for a pattern that is not round, the root of its
+  /// mean power at this θ.
   virtual double voltage(double sine, double frequency_hz) const = 0;
   /// Whether it is the same at all position angles.
   virtual bool is_round() const { return true; }
-  /// At a position angle in the dish's own frame: from where the zenith is to where east is when the zenith is north.
+  /// The voltage at a position angle in the dish's own frame, counted from the zenith towards where east is when the zenith is
+  /// north.
   virtual double voltage_at(double sine, double /*angle_rad*/, double frequency_hz) const {
     return voltage(sine, frequency_hz);
   }
-  /// sin θ of where the main lobe ends: the first null; or as far as a formula holds that has none, beyond which the voltage
-  /// is 0. 1 where it reaches the horizon.
+  /// sin θ of where the main lobe ends: at the first null, or where a formula without a null ends, beyond which the voltage is
+  /// 0. 1 where it reaches the horizon.
   virtual double main_lobe_sine(double frequency_hz) const = 0;
   /// sin θ up to which it is known in all directions and has no step: where a formula ends, if it ends in one; else 1.
   virtual double continuous_sine(double /*frequency_hz*/) const { return 1; }

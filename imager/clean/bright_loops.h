@@ -20,7 +20,7 @@ struct BrightRange {
   std::int32_t* offset;             ///< from the tile's first pixel, in pixels of the PSF
   float* value[most_taylor_terms];  ///< residual of each term
   float* merit;                     ///< see MeritForm
-  int count;                        ///< a multiple of that above
+  int count;                        ///< a multiple of `multiple`
 };
 
 /// A component as a tile sees it.

@@ -12,14 +12,14 @@
 namespace misfit::imager {
 
 /// The brightest places of a residual at all its scales, among which components are found without a look at the others. They
-/// lie in tiles; a component is at once taken off those in tiles near it, and off the others when it has become worth their
-/// while. Brightness is √merit in units of the residual: the residual's magnitude where components are points of one term.
+/// lie in tiles; a component is taken off places in near tiles at once, and off the others when enough has gathered. Brightness
+/// is √merit in units of the residual: the residual's magnitude where components are points of one term.
 class BrightPlaces {
  public:
   /// Finds the places of at least this brightness. Residual and PSF must outlive this.
   BrightPlaces(const ScaledResidual& residual, const ScaledPsf& psf, double brightness, int threads);
 
-  /// Where the next component is best put.
+  /// The best place for the next component.
   struct Place {
     std::size_t index = 0;
     std::size_t tile = 0;
@@ -37,14 +37,14 @@ class BrightPlaces {
   /// The change, as a brightness, that is outstanding in far tiles, off which components have not been taken yet: three
   /// standard deviations, as if sidelobes met at random, or the strongest sidelobe alone.
   double outstanding() const;
-  /// How bright other places may have become by all components, but for those near them: as many deviations above what they
-  /// were.
+  /// How bright other places may have become by all components that are not near them: as many deviations above what they were
+  /// as in outstanding().
   double of_others() const;
-  /// True if every place as bright as that is in the list and up to date. Other places may have brightened since: nine standard
-  /// deviations are allowed for, of sidelobes that meet at random where the fluxes of neighbours have one sign.
+  /// True if every place of this brightness or more is in the list and up to date. Other places may have brightened since: nine
+  /// standard deviations are allowed for, of sidelobes that meet at random where the fluxes of neighbours have one sign.
   bool sees_all_above(double brightness) const;
-  /// Takes these off far tiles. Returns false, and does nothing, where the PSF that far is not known, or a convolution of the
-  /// whole residual costs less.
+  /// Takes the outstanding components off far tiles. Returns false, and does nothing, where the PSF is not known that far, or a
+  /// convolution of the whole residual costs less.
   bool subtract_outstanding();
 
  private:
@@ -64,7 +64,7 @@ class BrightPlaces {
   void subtract(const Place& at, const TaylorValues& coefficient, std::size_t tile);
   void look_at(std::size_t tile, std::size_t scale, float merit);
   void look_at_row(int tile_row);
-  /// By how much sidelobes of this flux change the brightness of a place: the standard deviation where they meet at random.
+  /// The change of a place's brightness by sidelobes of this flux: the standard deviation where they meet at random.
   double change(const FoundFlux& flux) const;
   bool is_near(const Tile& a, const Tile& b) const;
 
@@ -75,9 +75,9 @@ class BrightPlaces {
   int tiles_v_;
   int width_;  ///< of the residual
   int height_;
-  double brightness_;                            ///< of the faintest
+  double brightness_;                            ///< of the faintest place
   std::vector<Tile> tile_;                       ///< [row][column]
-  std::vector<std::size_t> first_;               ///< [tile][scale], one more than these
+  std::vector<std::size_t> first_;               ///< [tile][scale], and one more
   std::vector<std::int32_t> offset_;             ///< [place]
   std::vector<float> value_[most_taylor_terms];  ///< [term][place]
   std::vector<float> merit_;

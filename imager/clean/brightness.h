@@ -7,15 +7,15 @@
 
 namespace misfit::imager {
 
-/// How bright the places of a residual are, as BrightPlaces says.
+/// The brightness of the places of a residual, as BrightPlaces defines it.
 struct Brightness {
   double points = 0;     ///< of the brightest point
   double brightest = 0;  ///< of the best place for a component
 };
 Brightness brightness_of(const ScaledResidual& residual, const ScaledPsf& psf, int threads);
 
-/// The lowest brightness, from `lowest` on, that no more than `most` places exceed, `highest` being that of the brightest:
-/// right to a 4096th of what lies between.
+/// The lowest brightness, from `lowest` on, that no more than `most` places exceed; `highest` is the brightest place's. Right
+/// to a 4096th of highest − lowest.
 double level_for(const ScaledResidual& residual, const ScaledPsf& psf, double lowest, double highest, std::size_t most,
                  int threads);
 

@@ -20,8 +20,8 @@ struct Component {
   double coefficient_jy(int term) const { return term == 0 ? flux_jy : further_jy[static_cast<std::size_t>(term - 1)]; }
 };
 
-/// A model made of components. Those at one place and scale are one. Equal components added in the same order give equal bits,
-/// whatever they are divided into; a model made anew from its components() has the same bits.
+/// A model made of components. Components at one place and scale are one. Equal components added in the same order give equal
+/// bits, whatever they are divided into; a model made anew from its components() has the same bits.
 class ComponentModel {
  public:
   ComponentModel() = default;
@@ -31,13 +31,13 @@ class ComponentModel {
   int width() const { return width_; }
   int height() const { return height_; }
   const std::vector<double>& scale_pixels() const { return scale_pixels_; }
-  /// One at a place, in the order of scale, row, column; none without flux at every frequency.
+  /// The components, one at a place and scale, in the order of scale, row, column; none whose flux is 0 at every frequency.
   const std::vector<Component>& components() const { return components_; }
 
   /// Throws std::invalid_argument when one of them lies outside the image or has no scale of the model.
   void add(const std::vector<Component>& found);
   double flux_jy() const;
-  /// Jy/pixel, of a Taylor term. Gaussians are those of gaussian_taps; what of them lies beyond the image is lost.
+  /// The image of a Taylor term, Jy/pixel. Gaussians are those of gaussian_taps; their parts beyond the image are lost.
   Image image(int threads, int term = 0) const;
 
  private:
@@ -49,7 +49,7 @@ class ComponentModel {
 
 /// The pixels of an image that are neither 0 nor NaN as point components of scale 0.
 std::vector<Component> components_of(const Image& image);
-/// Makes such components of the images of Taylor terms, in their order: of pixels that are neither in at least one of them.
+/// Point components of the images of Taylor terms: of pixels that are neither 0 nor NaN in at least one of them.
 std::vector<Component> components_of(const std::vector<const Image*>& terms);
 
 }  // namespace misfit::imager

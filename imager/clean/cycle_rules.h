@@ -14,36 +14,37 @@ struct CleanEnding {
   std::string reason;
 };
 
-/// How deep the next minor cycle of CLEAN goes, how exact the residual after it must be, and when CLEAN ends: what CleanOptions
-/// and CleanInput say of these, applied to what the cycles so far have left. It looks at no image but in its constructor.
+/// How deep the next minor cycle of CLEAN goes, how exact the residual after it must be, and when CLEAN ends: the rules of
+/// CleanOptions and CleanInput, applied to what the cycles so far have left. It looks at no image but in its constructor.
 class CycleRules {
  public:
   /// The rules of one run of CLEAN. Options and state are kept by reference: what the state is at a call decides.
   CycleRules(const CleanInput& input, const CleanOptions& options, const CleanState& state);
 
-  /// What the dirty image's pixels scatter by.
+  /// The statistics of the dirty image's pixels.
   const ImageStatistics& dirty() const { return dirty_; }
 
-  /// The next minor cycle, but for its mask: in any case it goes to where sidelobes of the brightest source could pass for
-  /// sources, and from there on, while components are trusted, to where those of all that it found could.
+  /// The options of the next minor cycle, but for its mask. In any case it goes down to where sidelobes of the brightest source
+  /// could pass for sources; while components are trusted, it goes on to where sidelobes of all that it found could.
   MinorCycleOptions next() const;
-  /// The depth below which threshold and nsigma let no minor cycle go that begins with what `begun` left, unless the noise
-  /// falls while sources go. Cycles that chase them by less than five percent are wasted: below nsigma all go by as much, since
-  /// the noise falls as sources go, and below the threshold those that follow one that went down to it.
+  /// The depth below which threshold and nsigma let no minor cycle go that begins with the residual of `begun`, unless the
+  /// noise falls as sources are removed. Cycles that would gain less than five percent are wasted: so all cycles go five
+  /// percent below nsigma, since the noise falls as sources are removed, and five percent below the threshold after a cycle
+  /// that went down to it.
   double last_depth(const MajorCycle& begun) const;
 
-  /// True if a cycle reached the limit of iterations, or the last depth for the second time: the first time it leaves what
-  /// sidelobes had hidden.
+  /// True if a cycle reached the limit of iterations, or the last depth for the second time: the first time it leaves sources
+  /// that sidelobes had hidden.
   bool is_likely_last(const MajorCycle& cycle) const;
-  /// How exact the residual of a model must be for minor cycles that follow one of this depth, which began with what `before`
-  /// left and saw this noise last: its error shall be a small part of their depth. The error is in proportion to images of the
-  /// data and of the model as if their phases were random.
+  /// How exact the residual of a model must be for the minor cycles after one of this depth, which began with the residual of
+  /// `before` and saw this noise last: the error shall be a small part of their depth. The error is in proportion to images of
+  /// the data and of the model as if their phases were random.
   double accuracy_for_next(double depth_jy, double noise_jy, const MajorCycle& before) const;
 
-  /// Tells what ends CLEAN before another minor cycle; nothing where it goes on.
+  /// The reason to end CLEAN before another minor cycle; nothing where it goes on.
   std::optional<CleanEnding> ending(bool mask_is_empty) const;
-  /// True if CLEAN would end with more than its best cycle left, in peak and mean square: cycles may leave somewhat more on the
-  /// way to less. Masks of automask grow, so that peaks cannot be compared; then it is false.
+  /// True if CLEAN would end with a larger residual than its best cycle's, in peak and mean square: cycles may leave somewhat
+  /// more on the way to less. With automask it is false: masks grow, so that peaks cannot be compared.
   bool is_worse_than_best() const;
 
  private:

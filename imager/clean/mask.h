@@ -13,7 +13,7 @@ std::size_t allowed_pixels(const Image& mask);
 /// Whether a mask allows no pixel at all.
 bool mask_is_empty(const Image& mask);
 
-/// The largest magnitude of a pixel that a mask of the same size allows; 0 where none is, or all are NaN.
+/// The largest magnitude of a pixel that a mask of the same size allows; 0 where none is allowed, or all are NaN.
 double largest_magnitude_within(const Image& mask, const Image& image, int threads);
 
 /// `image` with NaN wherever a mask of the same size allows nothing.

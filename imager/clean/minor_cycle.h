@@ -21,19 +21,19 @@ struct MinorCycleOptions {
   double gain = 0.1;  ///< part of a peak that a component takes
   int max_iterations = 0;
   double threshold_jy = 0;  ///< in Jy/beam; ends when no pixel that may be cleaned exceeds it in magnitude
-  /// It goes no deeper than this many times the robust noise of the residual that it begins with; or, without a mask, than so
-  /// many times the noise of what is left as sources go, and five times at least: what is fainter may be that noise.
+  /// It goes no deeper than this many times the robust noise of the residual that it begins with; or, without a mask, than this
+  /// many times, at least five times, the noise that is left as sources are removed: fainter pixels may be that noise.
   double nsigma = 0;
   double noise_jy = 0;  ///< of the residual that it begins with
-  /// It ends when no pixel exceeds what doubtful sidelobes of all that it found may leave. But down to `sure_jy` it goes in any
-  /// case.
+  /// It ends when no pixel exceeds what doubtful sidelobes of all its components may leave; but it goes down to `sure_jy` in
+  /// any case.
   DoubtfulSidelobes doubtful{};
   double sure_jy = 0;           ///< in Jy/beam; 0 = down to the threshold, whatever the doubt
   const Image* mask = nullptr;  ///< where components may lie, see mask.h; null = everywhere
-  /// Whether pixels that were faint are looked at in the end, if by nine standard deviations sidelobes of all that was found
-  /// may have made them exceed the threshold, as they are where the noise sets the depth; what it finds then exceeds it by half
-  /// a percent at most. Otherwise pixels may exceed it that were faint until sidelobes went; a residual that is made anew shows
-  /// them, too.
+  /// Whether it looks in the end at pixels that were faint, if sidelobes of all components, by nine standard deviations, may
+  /// have raised them above the threshold; no pixel then exceeds it by more than half a percent. Where the noise sets the depth
+  /// it looks in any case. Otherwise pixels that were faint until sidelobes were removed may exceed the threshold; a residual
+  /// made anew shows them, too.
   bool to_the_last = true;
   std::function<bool()> stop_requested;  ///< asked now and then; may be empty
 };
@@ -43,7 +43,7 @@ enum class MinorCycleEnd {
   iterations,  ///< as many components as allowed
   diverging,   ///< the peak exceeds minor_cycle_divergence times that of the start
   stopped,     ///< as requested
-  no_place,    ///< what is left lies where none of its scales may be put
+  no_place,    ///< all pixels left lie where none of its scales may be put
 };
 
 /// A peak that has grown by this factor shows that components do harm: sources beyond the PSF's reach, or a wrong PSF.
@@ -52,8 +52,8 @@ constexpr double minor_cycle_divergence = 3;
 struct MinorCycleReport {
   std::vector<Component> components;  ///< in the order in which they were found; places repeat
   double peak_jy = 0;                 ///< magnitude of the brightest pixel left that may be cleaned
-  double depth_jy = 0;  ///< down to which it was to go: the threshold, or above it what noise or doubts allow; or how far it
-                        ///< came before it was to end
+  double depth_jy = 0;  ///< that it was to reach: the threshold, or above it what noise or doubts allow; or that it reached
+                        ///< before it was to end
   double noise_jy = 0;  ///< of the residual, as far as it was followed
   MinorCycleEnd end = MinorCycleEnd::threshold;
 
@@ -71,7 +71,7 @@ class MinorCycle {
 
   /// The scales of its components, see ComponentModel.
   virtual const std::vector<double>& scale_pixels() const = 0;
-  /// How many residuals it looks at together: the Taylor terms of an image.
+  /// The number of residuals that it looks at together: the Taylor terms of an image.
   int terms() const { return terms_; }
   /// Components whose images, convolved with the PSF and taken off the residuals [term] (Jy/beam), leave less. Throws
   /// std::invalid_argument unless there is a residual for each term, and all images have the size of the PSF.
@@ -93,7 +93,7 @@ class MinorCycle {
   int terms_;
 };
 
-/// Says when a minor cycle ends, one way for all of them.
+/// Says when a minor cycle ends, in one way for all minor cycles.
 class MinorCycleWatch {
  public:
   /// Watches a minor cycle in an image of this width and height, whose brightest pixel is first_peak_jy to begin with.
@@ -101,13 +101,13 @@ class MinorCycleWatch {
       : options_(options), found_(width, height), first_peak_jy_(first_peak_jy), noise_jy_(options.noise_jy) {}
 
   void add(const Component& found) { found_.add(found.row, found.column, 0, std::abs(found.flux_jy)); }
-  /// Learns the noise of what is left.
+  /// Learns the noise of the residual left.
   void see_noise(double noise_jy) {
     constexpr double hardly_less = 0.98;
     noise_falls_ = noise_jy < hardly_less * noise_jy_;
     noise_jy_ = std::min(noise_jy_, noise_jy);
   }
-  /// How deep it is to go with what it found so far.
+  /// The depth to reach, given the components so far.
   double depth_jy() const {
     const DoubtfulSidelobes& doubtful = options_.doubtful;
     const double left_jy = std::max(doubtful.of_many * std::sqrt(found_.square(0)), doubtful.of_one * found_.largest(0));
@@ -117,7 +117,7 @@ class MinorCycleWatch {
   double least_depth_jy() const { return std::max(options_.threshold_jy, noise_depth_jy()); }
   /// True while the noise, and not the threshold, sets the least depth, so that less noise lets it go deeper.
   bool follows_noise() const { return options_.mask == nullptr && noise_depth_jy() > options_.threshold_jy; }
-  /// True where it has come to the depth that the noise sets, and there may be less noise by now.
+  /// True where it has reached the depth that the noise sets, and there may be less noise by now.
   bool may_go_deeper() const { return noise_falls_ && follows_noise() && depth_jy() == noise_depth_jy(); }
   double noise_jy() const { return noise_jy_; }
   /// True where pixels that were faint are to be looked at in the end.
@@ -127,7 +127,7 @@ class MinorCycleWatch {
   }
   /// Whether no further component is to be taken now that the brightest pixel has this magnitude; if so, `report` says why.
   bool ends(double peak_jy, MinorCycleReport& report) const;
-  /// Whether there are as many components as allowed, or the user wishes to end; if so, `report` says which.
+  /// Whether there are as many components as allowed, or the user wishes to end; if so, `report` says which of the two.
   bool is_at_limit(MinorCycleReport& report) const;
 
  private:

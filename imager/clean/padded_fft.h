@@ -12,8 +12,8 @@
 
 namespace misfit::imager {
 
-/// FFTs of images beside so much emptiness that nothing wraps when they are multiplied with that of a PSF of their size whose
-/// peak is its middle pixel. `Real`, float or double, is their precision.
+/// FFTs of images, padded so that nothing wraps when they are multiplied with the FFT of a PSF of their size whose peak is its
+/// middle pixel. `Real`, float or double, is their precision.
 template <typename Real>
 class PaddedFft {
  public:
@@ -22,9 +22,9 @@ class PaddedFft {
   using Spectrum = BigArray<Complex>;  ///< [u][v], v = 0 … nv − 1
   /// Pixels of a row of the image, which are 0 before.
   using Read = std::function<void(int row, Real* pixels)>;
-  /// Pixels of a row, or every step-th of every step-th row, counted by these; they may be changed.
+  /// Pixels of a row, or every step-th pixel of every step-th row, with rows counted accordingly; they may be changed.
   using Write = std::function<void(int row, Real* pixels)>;
-  /// Makes of the spectra of images [image][v] at one u that of another.
+  /// Combines the spectra of images [image][v] at one u into another's.
   using Combine = std::function<void(int u, const Complex* const* spectrum, Complex* result)>;
 
   /// `steps`, powers of two, are those of backward().
@@ -37,7 +37,7 @@ class PaddedFft {
   void forward(const Read& read, Half& to) const;
   /// The whole transform of a PSF over nu · nv: its middle pixel is the origin.
   void forward_psf(const Read& read, Spectrum& to) const;
-  /// Makes an image of what is combined from spectra of others, at every step-th pixel of every step-th row: it is to be as
+  /// Makes an image of a spectrum combined from others, at every step-th pixel of every step-th row: the spectrum must be as
   /// good as 0 beyond 1/(2 step). Spectra are combined, and rows written, by several threads, each once; a cache holds the
   /// spectra.
   void backward(const std::vector<const Half*>& from, const Combine& combine, int step, const Write& write) const;
@@ -63,7 +63,7 @@ class PaddedFft {
 template <typename Real>
 void read_row(const Image& image, int row, Real* to);
 
-/// to[v] = a[v] · b[v], or to[v] += that.
+/// to[v] = a[v] · b[v], or to[v] += a[v] · b[v].
 template <typename Real>
 void set_products(const std::complex<Real>* a, const std::complex<Real>* b, int count, std::complex<Real>* to);
 template <typename Real>

@@ -16,7 +16,7 @@ struct Region {
   int height = 0;
   std::vector<char> in;  ///< [height][width]
 
-  /// Where of(pixel) is.
+  /// The pixels where of(pixel) is true.
   template <typename Of>
   Region(const Image& image, int threads, const Of& of) : width(image.width), height(image.height), in(image.pixel.size()) {
     parallel_for(static_cast<std::size_t>(height), threads, [&](std::size_t r) {
@@ -46,7 +46,7 @@ struct RegionSmoothing {
   int threads = 1;
 };
 
-/// Makes of a region R those pixels where R ⊗ beam exceeds `cut` times its largest value. Pixels of R count 1, and the beam,
+/// Replaces a region R by the pixels where R ⊗ beam exceeds `cut` times its largest value. Pixels of R count 1, and the beam,
 /// whose peak is 1, is convolve_with_beam()'s. An empty region stays so.
 void smooth_and_cut(const RegionSmoothing& by, Region& region);
 

@@ -22,7 +22,7 @@ class ScaledFft {
   using Write = PaddedFft<float>::Write;
 
   void forward(const Read& read, Half& to) const { fft_.forward(read, to); }
-  /// An image, convolved with a scale, in the pixels at which it is looked at.
+  /// Convolves an image with a scale, in the pixels at which that scale is looked at.
   void convolve(const Half& image, std::size_t scale, const Write& write) const;
   /// Σ_t P_{q+t} ⋆ model_t, convolved with a scale. `model` [term].
   void respond(const std::vector<const Half*>& model, std::size_t term, std::size_t scale, const Write& write) const;
@@ -33,7 +33,7 @@ class ScaledFft {
   std::vector<LookedAt> scale_;
   PaddedFft<float> fft_;
   std::deque<PaddedFft<float>::Spectrum> psf_;  ///< [k], over the number of pixels of the FFT
-  std::vector<std::vector<float>> along_u_;     ///< [scale][u], what is left of a wave by its Gaussian; empty of points
+  std::vector<std::vector<float>> along_u_;     ///< [scale][u], part of a wave that the Gaussian leaves; empty for points
   std::vector<std::vector<float>> along_v_;
 };
 

@@ -19,12 +19,12 @@ void check_scales(const MultiscaleOptions& options);
 /// A scale at which residuals are looked at.
 struct LookedAt {
   double pixels = 0;  ///< full width at half maximum of its Gaussian; 0 = points
-  int index = -1;     ///< among those of the options; −1 = none: of points that only tell whether a threshold is reached
+  int index = -1;     ///< among the options' scales; −1 for points that only tell whether a threshold is reached
   double bias = 1;
   int step = 1;  ///< it is looked at in every step-th pixel of every step-th row: a power of two, a fifth of its width at most
 };
 
-/// Points first, whether components may be points or not.
+/// The scales looked at, points first, whether components may be points or not.
 std::vector<LookedAt> scales_looked_at(const MultiscaleOptions& options);
 
 }  // namespace misfit::imager

@@ -8,23 +8,23 @@
 
 namespace misfit::imager {
 
-/// How rank 0, which alone has the images and runs CLEAN on them, has the others make residuals with it: it tells them of each
-/// model before it makes that model's residuals, and of the end. What it says, others wait for in follow_clean().
+/// By this rank 0, which alone has the images and runs CLEAN, has the other ranks make residuals with it: it tells them of each
+/// model before it makes that model's residuals, and of the end. The others wait in follow_clean().
 class ModelSharer {
  public:
-  /// Kept by reference.
+  /// `ranks` is kept by reference.
   explicit ModelSharer(const Ranks& ranks) : ranks_(ranks) {}
   /// `coarser`: which of the coarser transforms is to be taken; −1 = none of them.
   void share(const ComponentModel& model, int coarser) const;
-  /// Others stop following.
+  /// Other ranks stop following.
   void end() const;
 
  private:
   const Ranks& ranks_;
 };
 
-/// On ranks after the first: makes the parts of residuals that this rank's samples give, of every model that rank 0 tells of,
-/// until it tells of the end.
+/// On ranks after the first: makes this rank's part of the residuals of every model that rank 0 tells of, until it tells of the
+/// end.
 void follow_clean(const ImagedData& imaged, const std::vector<CoarserTransform>& coarser, const TaylorExpansion& expansion,
                   const Context& context);
 

@@ -14,7 +14,7 @@
 
 namespace misfit::imager {
 
-/// Everything that both directions share.
+/// The data that adjoint and prediction share.
 template <typename Real>
 struct CoplanarSetup {
   ImageGeometry geometry;
@@ -25,11 +25,11 @@ struct CoplanarSetup {
   int threads;
 };
 
-/// The four colours of tiles that hold samples; those of one colour may be flushed at the same time, since their buffers reach
-/// into the next tile alone. The fullest first within a colour so that no thread starts the longest task last.
+/// The four colours of tiles that hold samples; tiles of one colour may be flushed at the same time, since their buffers reach
+/// into the next tile alone. Within a colour the fullest comes first, so that no thread starts the longest task last.
 std::vector<std::vector<TileTask>> coloured_tasks(const TileOrder& order, const GridShape& shape);
 
-/// Where the grid's rows of a tile begin.
+/// The cell where a row of a tile begins in the grid.
 inline std::size_t first_cell(const GridShape& shape, const TileTask& task, int row) {
   return static_cast<std::size_t>(task.tile_v * shape.tile + row) * static_cast<std::size_t>(shape.columns()) +
          static_cast<std::size_t>(task.tile_u * shape.tile);
@@ -44,7 +44,7 @@ void prefetch_tile(const GridShape& shape, const TileTask& task, const Real* pla
     for (int c = 0; c < reach + line - 1; c += line) hwy::Prefetch(plane + first_cell(shape, task, r) + std::min(c, reach - 1));
 }
 
-/// Where a tile lies in the planes of the grid.
+/// The cells of a tile in the planes of the grid.
 template <typename Real>
 TileCells<Real> cells_of(const GridShape& shape, const TileTask& task, const std::vector<Real*>& planes) {
   TileCells<Real> cells{static_cast<int>(planes.size()), {}, shape.columns()};
@@ -52,8 +52,8 @@ TileCells<Real> cells_of(const GridShape& shape, const TileTask& task, const std
   return cells;
 }
 
-/// A tile of no more samples is gridded and degridded where it lies in the grid: a buffer costs more to bring and to add.
-/// Measured for W = 4, 7 and 12: below 120 samples that holds in both directions, above 240 in none.
+/// A tile of no more samples is gridded and degridded in place in the grid: a buffer costs more to bring and to add. Measured
+/// for W = 4, 7 and 12: below 120 samples this holds in both directions, above 240 in neither.
 inline constexpr std::size_t most_in_place = 192;
 inline bool sparse(const TileOrder& order, const TileTask& task) {
   return order.samples[task.tile] <= most_in_place;

@@ -12,7 +12,7 @@ namespace misfit::imager {
 
 using kernels::Precision;
 
-/// What a CoplanarTransform is made of. Both kernels have one width, and x0 at least image size / (2 · FFT size) on their axis.
+/// The options of a CoplanarTransform. Both kernels have one width, and x0 at least image size / (2 · FFT size) on their axis.
 struct CoplanarOptions {
   ImageGeometry geometry;
   int nu = 0;  ///< FFT lengths, even, at least the image's size
@@ -35,14 +35,14 @@ struct TransformMemory {
   double psf = 0;           ///< grid that the PSF adds to an adjoint
   double fft = 0;           ///< buffers
   double other_stokes = 0;  ///< grids that further Stokes parameters add to an adjoint
-  double gathered = 0;      ///< samples whose blocks a prediction holds at once; 0: a block's
+  double gathered = 0;      ///< samples whose blocks a prediction holds at once; 0: of one block
 };
 
-/// Of an adjoint of `stokes` images from so many samples.
+/// The memory of an adjoint of `stokes` images from so many samples.
 TransformMemory memory_of(const CoplanarOptions& options, int stokes = 1, double samples = 0);
 
-/// Additions, one after another, that go into a cell of the grid where all samples lie in one: by so much can their rounding
-/// add up. Those in double precision do not count where the rest is in single.
+/// The number of additions, one after another, to a cell of the grid where all samples lie in one cell: rounding can add up
+/// this often. Additions in double precision do not count where the others are in single.
 double longest_plane_sum(Precision precision, double samples);
 
 }  // namespace misfit::imager

@@ -9,20 +9,20 @@
 
 namespace misfit::imager {
 
-/// More samples of one tile are added up in double precision. Where terms are alike, a sum in single precision errs to one side
-/// with every addition, by up to 2⁻²⁵ of itself: buffers of some thousand samples may be added up so only few at a time.
+/// More samples of one tile than this are added up in double precision. Where terms are alike, a sum in single precision errs
+/// to one side with every addition, by up to 2⁻²⁵ of itself: only few buffers of some thousand samples may be added up in it.
 inline constexpr std::size_t most_in_single = std::size_t{1} << 15;
 inline constexpr std::size_t one_by_one = 8;
 
 /// The sums in double precision of those tiles of a single-precision grid that take very many samples. A buffer of one Stokes
 /// parameter and the PSF is some 40 to 60 kB: up to 2 bytes for each of most_in_single samples, 16 where they are added one by
-/// one, as of many small blocks. Each further Stokes parameter adds two thirds of that, and so does each image that samples
-/// have shares in. There are none in double precision.
+/// one, as from many small blocks. Each further Stokes parameter adds two thirds of that, and so does each image that samples
+/// have shares in. A grid in double precision has no such sums.
 template <typename Real>
 class CrowdedTiles {
  public:
-  /// Counts what the tiles take in, samples [tile], and gives those that are crowded from now on a buffer like `pattern`. Up to
-  /// `most_alone` samples are added to the grid one by one, and count for more.
+  /// Counts the samples that tiles take in, samples [tile], and gives tiles that are crowded from now on a buffer like
+  /// `pattern`. Up to `most_alone` samples are added to the grid one by one, and count for more.
   void count(const std::vector<std::size_t>& samples, std::size_t most_alone, const TileBuffer<double>& pattern) {
     if constexpr (std::is_same_v<Real, float>) {
       taken_.resize(samples.size());

@@ -53,8 +53,8 @@ Image grid_to_image(const GridShape& shape, std::vector<Real> real, std::vector<
 /// Memory of either direction's buffers.
 double transform_buffer_bytes(const GridShape& shape, int threads, double real_bytes);
 
-/// The adjoint: G(p, q) = Σ_{x,y} h(x) h(y) image(x, y) exp(−2πi(px/nu + qy/nv)), margins filled by periodicity and
-/// conjugation.
+/// The adjoint of grid_to_image(): G(p, q) = Σ_{x,y} h(x) h(y) image(x, y) exp(−2πi(px/nu + qy/nv)), margins filled by
+/// periodicity and conjugation.
 template <typename Real>
 void image_to_grid(const Image& image, const ImageCorrection& correction, int threads, HalfGrid<Real>& grid);
 

@@ -8,7 +8,7 @@
 namespace misfit::imager {
 
 /// The part of the uv plane that lies between the two transforms: rows of the grid, columns of the image. [q][column]
-/// It is kept in the planes of the grid, each row where row q of the grid lay: nothing else is made from that.
+/// It is kept in the planes of the grid, each row in place of row q of the grid, which nothing else needs.
 template <typename Real>
 struct KeptColumns {
   const GridShape& shape;

@@ -8,7 +8,7 @@
 
 namespace misfit::imager {
 
-/// Images that are gridded together at most, in each of which a sample has a share.
+/// The most images that are gridded together, in each of which a sample has a share.
 inline constexpr std::size_t most_shared_images = 32;
 
 /// Shares c_k in several images as functions of w ≥ 0, at equal steps of it, between which they follow by Lagrange's formula of
@@ -16,14 +16,14 @@ inline constexpr std::size_t most_shared_images = 32;
 class ShareTable {
  public:
   static constexpr int points = 6;
-  static constexpr int before = points / 2 - 1;  ///< of the first of which the step at w = 0 is
+  static constexpr int before = points / 2 - 1;  ///< points before the one at the step of w
 
   ShareTable() = default;
-  /// [point][Re, Im][image], of which the first point lies `before` steps below 0, and the last so many and one more above the
-  /// largest w that is asked for.
+  /// Shares [point][Re, Im][image]. The first point lies `before` steps below 0, the last `before` + 1 steps above the largest
+  /// w that is asked for.
   ShareTable(std::size_t images, const std::vector<double>& shares);
 
-  /// Of a table of so many images and points.
+  /// The bytes of a table of so many images and points.
   static double bytes(std::size_t images, std::size_t points);
 
   /// The largest whole step at or below a w that may be asked for.
@@ -31,8 +31,8 @@ class ShareTable {
   /// Numbers from one point to the next, and from a point's Re to its Im.
   std::size_t point_stride() const { return 2 * stride_; }
   std::size_t part_stride() const { return stride_; }
-  /// Re c_k of the first of those points that w from step `step` on takes. What lies behind the images may be read, and is 0 or
-  /// of others.
+  /// Re c_k of the first of the points for a w between `step` and the next step. Numbers behind the images may be read, and are
+  /// 0 or belong to others.
   const float* at(std::size_t step, float) const { return single_.data() + step * point_stride(); }
   const double* at(std::size_t step, double) const { return double_.data() + step * point_stride(); }
 
@@ -43,13 +43,13 @@ class ShareTable {
   std::vector<double> double_;
 };
 
-/// By how much the samples of a block count in each of several images I_k that together make visibilities, V = Σ_k c_k A I_k.
+/// The shares of a block's samples in several images I_k that together make visibilities, V = Σ_k c_k A I_k.
 struct SampleShares {
   std::vector<const ShareTable*> of_channel;
   std::size_t first = 0;  ///< of the table's images
   std::size_t images = 0;
-  double steps_a_wavelength = 0;                ///< of the tables, whose w is that of the block
-  const std::complex<double>* phase = nullptr;  ///< that all shares of a sample have besides. [row][channel]
+  double steps_a_wavelength = 0;                ///< of the tables, for the block's w
+  const std::complex<double>* phase = nullptr;  ///< a further factor of all shares of a sample. [row][channel]
 };
 
 }  // namespace misfit::imager

@@ -21,7 +21,7 @@ struct TapTable {
   int padded = 0;
   int degree = 0;
   std::vector<Real> coefficient;                ///< [power][tap]
-  std::optional<kernels::TableOptions> lookup;  ///< looked up where there is one
+  std::optional<kernels::TableOptions> lookup;  ///< taps are looked up where this is given
   int last = 0;                                 ///< the last entry from which a stencil starts
   std::vector<Real> entry;                      ///< [t ≥ 0, t < 0][entry][tap]
 

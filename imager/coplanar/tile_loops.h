@@ -10,8 +10,8 @@
 
 namespace misfit::imager {
 
-/// Samples of one cell that `spread` sums in registers: more in single precision would lose too much, since equal terms err to
-/// one side.
+/// The most samples of one cell that `spread` sums in registers: more in single precision would lose too much, since equal
+/// terms err to one side.
 inline constexpr int most_in_registers = 32;
 
 /// Planes of a grid: real and imaginary parts of each image, and last (while gridding a PSF) weights.
@@ -24,7 +24,7 @@ struct TileBatch : TilePlaces<Real> {
   Real value[most_grid_planes][TilePlaces<Real>::capacity];  ///< [plane]
 };
 
-/// Where the cells of a tile lie.
+/// The cells of a tile in memory.
 template <typename Real>
 struct TileCells {
   int planes = 0;

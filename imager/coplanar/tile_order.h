@@ -66,11 +66,11 @@ struct TileOrder {
   std::vector<SampleSums> sums;     ///< [set]: when imaging, of the samples in the order, and those outside the grid
 };
 
-/// Throws std::invalid_argument when there are more than a run can count.
+/// Throws std::invalid_argument when there are more channels than a run can count.
 void check_channels(std::size_t channels);
 
-/// Which samples are wanted: for imaging, with their sums, those of weight not 0 inside the grid or beyond it too; or for
-/// prediction those of weight not 0; or all.
+/// The samples that are wanted. imaging: of weight not 0, inside the grid, with their sums; imaging_beyond: beyond the grid
+/// too; usable: of weight not 0, for prediction; all: all.
 enum class Wanted { imaging, imaging_beyond, usable, all };
 
 /// Orders the wanted samples by the tile of their first tap. `block` needs weights unless all are wanted; sums are taken of

@@ -14,7 +14,7 @@ struct TilePlaces {
 };
 
 /// A row of samples as a tile sees it: at frequency f, u_per_hz · f − u_origin is the position along u of the sample's first
-/// tap in [0, tile), whose whole part is the column and whose fraction is t + ½; so along v, with the row.
+/// tap in [0, tile), whose whole part is the column and whose fraction is t + ½; likewise along v, with the row.
 struct RowInTile {
   double u_per_hz = 0;
   double u_origin = 0;
@@ -28,7 +28,7 @@ struct RowInTile {
 void append_positions(const RowInTile& row, const double* frequency_hz, int count, TilePlaces<float>& places);
 void append_positions(const RowInTile& row, const double* frequency_hz, int count, TilePlaces<double>& places);
 
-/// The same of one sample, to the same bits, without the way to the vectors.
+/// Appends one sample, to the same bits, without vectors.
 void append_position(const RowInTile& row, double frequency_hz, TilePlaces<float>& places);
 void append_position(const RowInTile& row, double frequency_hz, TilePlaces<double>& places);
 
@@ -43,7 +43,7 @@ struct RowsInTile {
   int tile = 0;
 };
 
-/// The same of `count` rows of UVW [row][3], which are in `negated` [row] where they are; to the bits of one by one.
+/// Appends `count` rows of UVW [row][3]; `negated` [row] tells which were negated. The bits are those of rows one by one.
 void append_rows(const RowsInTile& rows, const double* uvw_m, int count, TilePlaces<float>& places, bool* negated);
 void append_rows(const RowsInTile& rows, const double* uvw_m, int count, TilePlaces<double>& places, bool* negated);
 

@@ -21,7 +21,7 @@ struct TileTask {
   std::size_t tile;
 };
 
-/// What a batch needs to know of its samples besides their places.
+/// The data of a batch's samples besides their places.
 struct BatchSamples {
   static constexpr int capacity = TileBatch<double>::capacity;
   std::size_t index[capacity];  ///< row × channels + channel
@@ -42,7 +42,7 @@ struct BatchSamples {
   }
 };
 
-/// The positions from which those in a tile are counted, see RowInTile.
+/// The origin of positions in a tile, see RowInTile.
 struct TileOrigin {
   double u, v;
 
@@ -82,7 +82,7 @@ class RowWalk {
   TileOrigin origin_;
 };
 
-/// Samples of one tile on their way into batches, of which it tells done(batch, samples) as they are full.
+/// Fills batches with the samples of one tile, and calls done(batch, samples) for each that is full.
 template <typename Real, typename Done>
 class BatchFiller {
  public:
@@ -97,7 +97,7 @@ class BatchFiller {
     samples_.off_phase_centre = geometry.off_phase_centre();
   }
 
-  /// Channels of one row.
+  /// Adds channels of one row.
   void add_channels(const SampleRun& run, double highest_frequency_hz) {
     const double* const uvw_m = &at_.uvw_m[std::size_t{3} * run.row];
     const RowWalk row({uvw_m, scale_}, shape_, task_, highest_frequency_hz);
@@ -115,7 +115,7 @@ class BatchFiller {
     }
   }
 
-  /// Rows of one channel.
+  /// Adds rows of one channel.
   void add_rows(const SampleRun& run) {
     const double frequency_hz = at_.frequency_hz.front();
     const TileOrigin origin(shape_, task_);
@@ -133,7 +133,7 @@ class BatchFiller {
     }
   }
 
-  /// What is left.
+  /// Hands over the last batch.
   void finish() {
     if (batch_.count == 0) return;
     if (samples_.off_phase_centre) phasors(samples_.turns, batch_.count, samples_.cosine, samples_.sine);

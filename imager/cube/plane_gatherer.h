@@ -12,11 +12,11 @@
 
 namespace misfit::imager {
 
-/// About so many samples of a plane are gridded together, where there are as many: each tile of the grid then has more than a
+/// About this many samples of a plane are gridded together, if there are as many: each tile of the grid then has more than a
 /// few.
 inline constexpr std::size_t samples_gathered_at_once = std::size_t{1} << 19;
 
-/// Deals the samples of blocks out to the planes of a cube. What a plane gets of the same blocks is the same for any number of
+/// Deals the samples of blocks out to the planes of a cube. A plane gets the same samples of the same blocks for any number of
 /// threads, and whichever other planes are gathered.
 class PlaneGatherer {
  public:
@@ -25,10 +25,11 @@ class PlaneGatherer {
 
   /// Throws std::invalid_argument when the block does not tell the widths of its channels.
   void add(const VisibilityBlock& block);
-  /// Those rows that are many enough to be gridded together, or all there are after the last add(); in order.
+  /// The groups of rows that are large enough to be gridded together, or, with `all`, after the last add(), all groups; in
+  /// order.
   std::vector<std::unique_ptr<GatheredRows>> take(bool all);
-  /// Usable samples added that lie in no plane of the cube, and are taken by none of the range: those below all planes where
-  /// the range has the first plane, those above where it has the last.
+  /// The number of usable samples added that lie in no plane of the cube: below all planes where the range has the first plane,
+  /// and above all where it has the last.
   std::uint64_t outside_planes() const { return outside_planes_; }
 
  private:
@@ -39,10 +40,10 @@ class PlaneGatherer {
   PlaneRange range_;
   int threads_;
   std::uint64_t expected_samples_;
-  /// Those of a window, known by its frequencies; in the order in which they appeared.
+  /// The rows of a window, known by its frequencies; windows are in the order in which they appeared.
   struct Window {
     std::vector<double> frequency_hz;
-    std::unique_ptr<GatheredRows> growing;  ///< null where none are begun
+    std::unique_ptr<GatheredRows> growing;  ///< null where no group is begun
   };
   Window& window_of(const VisibilityBlock& block);
 
@@ -54,7 +55,7 @@ class PlaneGatherer {
 /// The visibilities of some planes, counted from the first of them.
 class GatheredPlanes {
  public:
-  /// What a pass found.
+  /// The counts of a pass.
   struct Counts {
     SampleCounts read;                 ///< of the blocks that were read
     std::uint64_t outside_planes = 0;  ///< usable samples that lie in no plane of the cube
@@ -63,9 +64,9 @@ class GatheredPlanes {
   GatheredPlanes(std::vector<std::unique_ptr<GatheredRows>> rows, const Counts& counts)
       : rows_(std::move(rows)), counts_(counts) {}
 
-  /// Of one plane, made anew. May be called for different planes at the same time.
+  /// The visibilities of one plane, made anew. May be called for different planes at the same time.
   StoredVisibilities plane(int plane) const;
-  /// The same, which are held no longer.
+  /// The visibilities of one plane, which are held no longer.
   StoredVisibilities take(int plane);
   const Counts& counts() const { return counts_; }
 
@@ -86,7 +87,7 @@ class PlaneView : public VisibilitySource {
       : from_(from), sampling_(sampling), plane_(plane) {}
 
   std::unique_ptr<BlockStream> open() const override;
-  /// Of the source: how many of them are the plane's is known only once they are read.
+  /// The samples of the source: how many of them are the plane's is known only once they are read.
   std::uint64_t samples() const override { return from_.samples(); }
 
  private:

@@ -5,7 +5,7 @@
 
 namespace misfit::imager {
 
-/// Antennas as a set describes them.
+/// A sort of antennas, as a set describes them.
 struct AntennaSort {
   std::string telescope;  ///< as in the set, such as "EVLA"
   double diameter_m = 0;  ///< as in the set; not positive where it does not say

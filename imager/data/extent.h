@@ -30,7 +30,7 @@ struct NeglectedPhase {
   double rms_rad = 0;  ///< over samples (by weight) and pixels
 };
 
-/// Its largest value, known before the data are read; |w| in wavelengths.
+/// The largest neglected phase, known before the data are read; |w| in wavelengths.
 double max_w_phase_rad(double max_abs_w, const ImageGeometry& geometry);
 NeglectedPhase neglected_w_phase(const UvwReach& reach, const WSpread& spread, const ImageGeometry& geometry);
 

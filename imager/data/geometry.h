@@ -47,7 +47,7 @@ struct ImageGeometry {
   double cell_rad = 0;  ///< a pixel's width
   SkyDirection phase_centre;
   DirectionCosines centre = {};  ///< of the pixel in the middle, from the phase centre
-  double pixel_aspect = 1;       ///< a pixel's height over its width; what makes beams expects 1
+  double pixel_aspect = 1;       ///< a pixel's height over its width; functions that make beams expect 1
 
   double cell_height_rad() const { return cell_rad * pixel_aspect; }
   int centre_column() const { return width / 2; }

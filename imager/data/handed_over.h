@@ -6,7 +6,7 @@
 
 namespace misfit::imager {
 
-/// Blocks that go to the first who reads them, who then holds them alone, and may weigh them in place.
+/// Blocks that go to their first reader, which then holds them alone, and may weigh them in place.
 class HandedOver : public VisibilitySource {
  public:
   explicit HandedOver(StoredVisibilities visibilities)

@@ -10,7 +10,7 @@ namespace misfit::imager {
 /// Gives `value` to the pixels beyond the horizon.
 void set_beyond_horizon(const ImageGeometry& geometry, double value, Image& image);
 
-/// What pixels beyond the horizon hold in images.
+/// The value of pixels beyond the horizon in images.
 inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace misfit::imager

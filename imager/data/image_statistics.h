@@ -6,7 +6,7 @@
 
 namespace misfit::imager {
 
-/// What one pass over an image's pixels tells of those that are not NaN.
+/// The statistics of an image's pixels that are not NaN, from one pass.
 struct ImageStatistics {
   std::size_t count = 0;
   double square_sum = 0;
@@ -19,10 +19,10 @@ struct ImageStatistics {
 };
 
 ImageStatistics statistics_of(const Image& image);
-/// By several threads; the same for any number of them.
+/// The statistics by several threads; the same for any number of them.
 ImageStatistics statistics_of(const Image& image, int threads);
 
-/// Divides all pixels, and tells of what they are then.
+/// Divides all pixels, and returns their statistics after that.
 ImageStatistics divide(Image& image, double by);
 
 /// √(mean of squares) of the pixels that are not NaN; 0 where there are none.
@@ -37,10 +37,10 @@ struct Peak {
   int column = 0;
   double value = 0;
 };
-/// The first of them in row-major order where several are equal. NaN is no peak, unless every pixel is NaN. The image must have
-/// a pixel.
+/// The pixel of largest magnitude; the first in row-major order where several are equal. NaN is no peak, unless every pixel is
+/// NaN. The image must have a pixel.
 Peak find_peak(const Image& image);
-/// The same of an image with these statistics.
+/// The peak of an image with these statistics.
 Peak find_peak(const Image& image, const ImageStatistics& statistics);
 
 }  // namespace misfit::imager

@@ -6,7 +6,7 @@
 
 namespace misfit::imager {
 
-/// What an image's header says of the observation behind it.
+/// The observation behind an image, as in its header.
 struct Observation {
   std::string telescope;
   std::string observer;
@@ -16,7 +16,7 @@ struct Observation {
   double frequency_hz = 0;     ///< middle of the band imaged
   double bandwidth_hz = 0;     ///< from the lower edge of the lowest channel to the upper edge of the highest
   std::string spectral_frame;  ///< FITS SPECSYS: "TOPOCENT", "LSRK", …; empty when unknown
-  std::string moving_at = {};  ///< where the image moves with a target, when its phase centre was there: UTC; else empty
+  std::string moving_at = {};  ///< UTC at which the phase centre was there, where the image moves with a target; else empty
 };
 
 }  // namespace misfit::imager

@@ -25,21 +25,22 @@ struct RowRun {
   std::size_t count = 0;
 };
 
-/// The way of visibilities from one phase centre to another. The baseline b = u e_u + v e_v + w e_w stays as it is and is only
-/// seen along other axes; the delay that is taken out changes from b·e_w to b·e_w', so that V' = V exp(2πi(w − w')) without any
-/// approximation (Thompson, Moran & Swenson 2017, section 3.1). The same image results from both, seen from another centre.
+/// The shift of visibilities from one phase centre to another. The baseline b = u e_u + v e_v + w e_w stays as it is and is
+/// only seen along other axes; the delay that is taken out changes from b·e_w to b·e_w', so that V' = V exp(2πi(w − w'))
+/// without any approximation (Thompson, Moran & Swenson 2017, section 3.1). Both give the same image, seen from different
+/// centres.
 class PhaseShift {
  public:
-  /// None.
+  /// No shift.
   PhaseShift() = default;
   PhaseShift(const UvwAxes& from, const UvwAxes& to);
 
   /// Whether it changes nothing.
   bool none() const { return none_; }
-  /// Seen along the new axes: UVW [row][3], metres.
+  /// Turns UVW [row][3], metres, to the new axes.
   void rotate(std::vector<double>& uvw_m) const { rotate(uvw_m, {0, uvw_m.size() / 3}); }
   void rotate(std::vector<double>& uvw_m, RowRun rows) const;
-  /// The block as the new phase centre sees it. The phasors are right to double precision.
+  /// Shifts the block to the new phase centre. The phasors are right to double precision.
   void apply(VisibilityBlock& block) const { apply(block, {0, block.rows()}); }
   void apply(VisibilityBlock& block, RowRun rows) const;
   /// Visibilities [row][channel] of the new phase centre become those of the old one, where their UVW are `old`.
@@ -64,10 +65,10 @@ class PhaseShift {
   PhasePosition to_;                           ///< the new centre as the old one sees it
 };
 
-/// The phase shifts of all rows of a block, each of a run of rows: where a phase centre moves, of the rows of one time.
+/// The phase shifts of all rows of a block, each for a run of rows; where a phase centre moves, for the rows of one time.
 class RowShifts {
  public:
-  /// `rows` further rows have this shift, which must outlive these.
+  /// Gives `rows` further rows this shift, which must outlive this object.
   void append(const PhaseShift& shift, std::size_t rows);
 
   /// See PhaseShift.

@@ -10,53 +10,54 @@
 
 namespace misfit::imager {
 
-/// What ranks told each other.
+/// The messages among ranks, counted.
 struct Traffic {
   std::uint64_t exchanges = 0;
-  std::uint64_t bytes = 0;  ///< that one of them gave
+  std::uint64_t bytes = 0;  ///< that one rank gave
 };
 
-/// Numbers of an image that pass from rank to rank at a time, where they are added up on their way to rank 0.
+/// The numbers of an image that pass from rank to rank in one piece, where images are added up on their way to rank 0.
 inline constexpr std::size_t chain_piece = std::size_t{1} << 18;
 
-/// Whether so many numbers come to rank 0 sooner along all ranks, in pieces that follow each other, than in a binomial tree,
-/// where it takes them in from each of its branches.
+/// Whether the sum of `count` numbers reaches rank 0 sooner along a chain of all ranks, in pieces that follow each other, than
+/// in a binomial tree, where rank 0 takes numbers in from each of its branches.
 bool pass_along_ranks(int ranks, std::size_t count);
 
 /// The processes of a run that share its samples, "ranks" as MPI has them. Each has a part of the samples and computes with it;
-/// what the parts add up to comes to all, so that all decide alike and go on together. Calls but for send(), receive() and
-/// waiting() are made by all of them, in the same order, from one thread at a time. What cannot be exchanged ends the run.
+/// all get the sums over the parts, so that all decide alike and go on together. All functions but send(), receive() and
+/// waiting() are called by all ranks, in the same order, from one thread at a time. A failed exchange ends the run.
 class Ranks {
  public:
   virtual ~Ranks() = default;
   virtual int size() const = 0;
-  /// Which of them this is, from 0.
+  /// The number of this rank, from 0.
   virtual int rank() const = 0;
-  /// How many of them share this one's machine, and how many of these may run on its cores; itself included.
+  /// The number of ranks on this rank's machine, and the number of these that may run on its cores; itself included.
   virtual int on_this_machine() const = 0;
   virtual int on_these_cores() const = 0;
   bool alone() const { return size() == 1; }
-  /// Whether this is the one that speaks, and writes.
+  /// Whether this is rank 0, which alone prints and writes.
   bool first() const { return rank() == 0; }
 
   /// Waits until all are here.
   virtual void meet() const = 0;
-  /// Adds up `count` numbers of each rank, the first with the first; all get the same bits.
+  /// Adds up `count` numbers of each rank, element by element; all ranks get the same bits.
   virtual void sum(double* values, std::size_t count) const = 0;
-  /// The same for rank 0 alone; what others have afterwards is of no use.
+  /// Adds up numbers likewise, for rank 0 alone; the values of others are undefined afterwards.
   virtual void sum_at_first(double* values, std::size_t count) const = 0;
-  /// The largest of each, the same way.
+  /// The largest of each number over all ranks; all ranks get the same bits.
   virtual void largest(double* values, std::size_t count) const = 0;
-  /// Gives all what rank 0 has; each gives room for as many bytes.
+  /// Copies rank 0's bytes to all ranks; each has room for as many bytes.
   virtual void share(void* bytes, std::size_t count) const = 0;
-  /// What each rank gives [rank], at rank 0; nothing at others.
+  /// The bytes of each rank [rank], at rank 0; nothing at others.
   virtual std::vector<std::string> gather_at_first(const std::string& bytes) const = 0;
-  /// Gives another rank bytes that it waits for in receive(). Any thread may call these, one at a time for each rank.
+  /// Sends bytes to another rank, which waits for them in receive(). Any thread may call send() and receive(), one at a time
+  /// for each rank.
   virtual void send(int to, const std::string& bytes) const = 0;
   virtual std::string receive(int from) const = 0;
   /// A rank whose message waits for receive(); none where nobody has sent one.
   virtual std::optional<int> waiting() const = 0;
-  /// So far.
+  /// The traffic so far.
   virtual Traffic traffic() const = 0;
 };
 
@@ -79,7 +80,7 @@ inline double largest_of(const Ranks& ranks, double value) {
   return value;
 }
 
-/// Whether it is so on any rank.
+/// Whether `here` is true on any rank.
 inline bool any_of(const Ranks& ranks, bool here) {
   return largest_of(ranks, here ? 1 : 0) > 0;
 }

@@ -26,13 +26,13 @@ struct SpectralAxis {
   int channels = 1;              ///< planes
   std::string frame;             ///< in which these are frequencies, as FITS SPECSYS: "TOPOCENT", "LSRK", …; empty = unknown
   double rest_frequency_hz = 0;  ///< of the line; 0 = none was named
-  bool in_wavelength = false;    ///< whether planes are evenly spaced in that
+  bool in_wavelength = false;    ///< whether planes are evenly spaced in wavelength
 
   double frequency_hz(double plane) const {
     return in_wavelength ? reference_hz / (1 - plane * increment_hz / reference_hz) : reference_hz + plane * increment_hz;
   }
   double width_hz(int plane = 0) const { return in_wavelength ? planes(plane, 1).width_hz() : std::abs(increment_hz); }
-  /// The increment that files state: 1 Hz where the planes have no width, since none of 0 makes an axis.
+  /// The increment that files state: 1 Hz where the planes have no width, since an increment of 0 makes no axis.
   double step_hz() const { return increment_hz != 0 ? increment_hz : 1; }
   /// The fractional plane at a frequency; plane k reaches from k − 0.5 to k + 0.5.
   double plane_of(double hz) const { return (hz - reference_hz) / increment_hz * (in_wavelength ? reference_hz / hz : 1); }

@@ -6,7 +6,7 @@
 
 namespace misfit::imager {
 
-/// What an image shows: a Stokes parameter, or one correlation of the feeds. The values are casacore's codes
+/// The kind of an image: a Stokes parameter, or one correlation of the feeds. The values are casacore's codes
 /// (Stokes::StokesTypes).
 enum class Stokes { I = 1, Q, U, V, RR, RL, LR, LL, XX, XY, YX, YY };
 
@@ -17,20 +17,21 @@ std::string stokes_name(Stokes stokes);
 /// 29).
 int fits_stokes_code(Stokes stokes);
 
-/// Whether a code stands for one, as CORR_TYPE of a MeasurementSet and a FITS STOKES axis give it.
+/// Whether a code stands for a Stokes parameter or correlation here, as in CORR_TYPE of a MeasurementSet and on a FITS STOKES
+/// axis.
 bool is_stokes_code(int casacore_code);
 bool is_fits_stokes_code(int fits_code);
 Stokes stokes_of_fits_code(int fits_code);
 
-/// Where a list has one; nothing where it has not.
+/// The place of `wanted` in a list; nothing where it is not there.
 std::optional<int> plane_of(const std::vector<Stokes>& list, Stokes wanted);
 
 /// "IQUV" for I, Q, U and V.
 std::string stokes_names(const std::vector<Stokes>& list);
 
 /// The list that a text such as "I", "IQUV", "RRLL" or "XX,YY" names. Throws std::invalid_argument that says what was expected
-/// where it names none, one twice, or some that do not lie evenly on a FITS axis (I Q V). Those that do in another order than
-/// that of the text are in theirs. "pseudoI" is I, see is_pseudo_i().
+/// where it names none, one twice, or some that do not lie evenly on a FITS axis (I Q V). If they lie evenly in another order
+/// than the text's, the list has that order. "pseudoI" is I, see is_pseudo_i().
 std::vector<Stokes> parse_stokes(const std::string& text);
 
 /// Whether a text, in capitals or not, asks for CASA's pseudoI: Stokes I also of samples that have one parallel hand alone.

@@ -12,8 +12,8 @@
 
 namespace misfit::imager {
 
-/// What became of the samples read, in Stokes samples (row × channel). Each sample left out is counted once, under the first
-/// of these reasons that applies, in the order in which they stand here.
+/// Counts of the samples read, in Stokes samples (row × channel). Each sample left out is counted once, under the first of
+/// these reasons that applies, in the order in which they stand here.
 struct SampleCounts {
   std::uint64_t rows_read = 0;
   std::uint64_t samples_read = 0;
@@ -21,29 +21,29 @@ struct SampleCounts {
   std::uint64_t flagged = 0;
   std::uint64_t nonfinite = 0;     ///< NaN or infinity in data, weight or UVW
   std::uint64_t zero_weight = 0;   ///< weight zero or negative
-  std::uint64_t outside_grid = 0;  ///< |u| or |v| beyond 1/(2 cell); known only once the image is
+  std::uint64_t outside_grid = 0;  ///< |u| or |v| beyond 1/(2 cell); known only once there is an image
   std::uint64_t used = 0;
 
   SampleCounts& operator+=(const SampleCounts& other);
-  /// Becomes that of all ranks.
+  /// Adds the counts of all other ranks.
   void add_up(const Ranks& ranks);
 };
 
-/// Thrown where none of the samples read can be used: its message counts why not.
+/// Thrown where none of the samples read can be used: its message counts the reasons.
 struct NothingUsable : std::runtime_error {
   explicit NothingUsable(const SampleCounts& counts);
 };
 
-/// With what a row was observed, and in which direction. Numbers are places in lists that whoever hands out the rows explains;
-/// -1 is in no list.
+/// The sight of a row: the antennas that observed it, and their direction. Numbers are places in lists that the source of the
+/// rows has; -1 is in no list.
 struct RowSight {
   std::int32_t antenna_one = 0;
   std::int32_t antenna_other = 0;
-  std::int32_t field = 0;  ///< or pointing: where the dishes of the row looked
+  std::int32_t field = 0;  ///< or pointing: the direction of the row's dishes
   float zenith_rad = 0;    ///< position angle of the zenith, from north through east, by which the dishes are turned
 };
 
-/// Where samples lie: rows of UVW, each seen at every channel. Those of the same rows share UVW.
+/// The coordinates of samples: rows of UVW, each seen at every channel. Coordinates of the same rows share UVW.
 struct SampleCoordinates {
   SharedVector<double> uvw_m;         ///< [row][3], metres, with the sign stored in the MeasurementSet
   std::vector<double> frequency_hz;   ///< [channel]
@@ -62,13 +62,13 @@ struct VisibilityBlock : SampleCoordinates {
   /// of real and imaginary part in Jy where the data's own weights are 1/σ²; weighting for an image multiplies it.
   std::vector<float> weight;
   SampleCounts counts;  ///< of this block alone
-  /// [row]: a frequency in the image's spectral frame over what it is in the frame of frequency_hz; empty: 1.
+  /// [row]: a frequency in the image's spectral frame over the same in the frame of frequency_hz; empty: 1.
   std::vector<double> frame_ratio;
   std::vector<double> channel_width_hz;  ///< [channel], positive; may be empty unless a cube is made of the block
 
   /// How many Stokes parameters it carries.
   std::size_t stokes() const { return samples() == 0 ? 1 : visibility.size() / samples(); }
-  /// [row][channel] of one of them. Throws std::invalid_argument when there are not as many.
+  /// [row][channel] of one Stokes parameter. Throws std::invalid_argument when there are not as many.
   const std::complex<float>* visibility_of(std::size_t stokes) const;
 };
 
@@ -87,10 +87,10 @@ class VisibilitySource {
   virtual std::unique_ptr<BlockStream> open() const = 0;
   /// Samples that a full pass hands out, usable or not.
   virtual std::uint64_t samples() const = 0;
-  /// Those who have the other samples of the same image, with whom whoever adds up samples adds up what came of them.
+  /// The ranks that share the samples of the image: sums over samples are added up over them.
   virtual const Ranks& ranks() const { return alone(); }
-  /// To be called by all ranks, each in the thread that exchanges, when it has read a pass to its end: what the source tells of
-  /// its passes is that of all ranks from then on.
+  /// To be called by all ranks, each in the thread that exchanges, when it has read a pass to its end: from then on the
+  /// source's facts about its passes are those of all ranks.
   virtual void end_pass() const {}
 };
 

@@ -9,7 +9,7 @@
 
 namespace misfit::imager {
 
-/// The Stokes parameters that are imaged at once at most.
+/// The most Stokes parameters that are imaged at once.
 inline constexpr int most_stokes = 4;
 
 /// Visibilities [row][channel] at the samples of a block, of either precision.
@@ -19,8 +19,8 @@ using VisibilitySet = std::variant<const std::complex<float>*, const std::comple
 class VisibilitySets : public std::vector<VisibilitySet> {
  public:
   VisibilitySets() = default;
-  /// The block's own: of its first Stokes parameter for one image, else of all. Throws std::invalid_argument when the block
-  /// does not carry as many.
+  /// The block's own visibilities: of its first Stokes parameter for one image, else of all. Throws std::invalid_argument when
+  /// the block does not carry as many.
   VisibilitySets(const VisibilityBlock& block, int images);
   /// One set, [row][channel], of one image. No value is copied, here or below.
   VisibilitySets(const std::vector<std::complex<double>>& one) : vector{one.data()} {}

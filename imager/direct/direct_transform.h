@@ -46,8 +46,8 @@ struct DirectPixels {
   std::shared_ptr<const SampleResponse> response = {};  ///< null: samples see all of them alike
 };
 
-/// Some pixels of an image, by direct sums: an adjoint's images are as many pixels wide and one high. What is predicted is left
-/// to another transform, of the whole image, which stays where it is.
+/// Some pixels of an image, by direct sums: an adjoint's images are as many pixels wide and one high. Predictions are left to
+/// another transform, of the whole image, which must outlive this.
 class PixelTransform : public Transform {
  public:
   PixelTransform(DirectPixels at, const Transform& whole) : at_(std::move(at)), whole_(whole) {}

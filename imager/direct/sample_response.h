@@ -9,7 +9,7 @@
 
 namespace misfit::imager {
 
-/// By how much the samples of a block respond to directions.
+/// The response of the samples of a block to directions.
 struct BlockResponse {
   std::size_t channels = 1;
   std::size_t groups = 1;            ///< of rows that respond alike
@@ -21,7 +21,7 @@ struct BlockResponse {
   }
 };
 
-/// By how much samples respond to directions, as the definition of a mosaic has it: what dishes' beams let through.
+/// The response of samples to directions, as in the definition of a mosaic: the beams of their dishes.
 class SampleResponse {
  public:
   virtual ~SampleResponse() = default;

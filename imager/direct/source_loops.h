@@ -6,7 +6,7 @@
 
 namespace misfit::imager {
 
-/// Sources of one kind, all points or all Gaussians, [source]. There are always a multiple of `together`: those that fill it
+/// Sources of one kind, all points or all Gaussians, [source]. Their number is a multiple of `together`: sources that fill it
 /// up have no flux.
 struct SourceArrays {
   static constexpr std::size_t together = 2;
@@ -51,7 +51,7 @@ inline constexpr double largest_decay = 64;
 void add_points(const SourceArrays& sources, SourceRange range, const RowGroup& rows, const EvenChannels& channels,
                 GroupSums& sums);
 
-/// The same for Gaussians, whose values along channels have ratios with a constant ratio.
+/// Adds the visibilities of Gaussians, whose values along channels have ratios with a constant ratio.
 void add_gaussians(const SourceArrays& sources, SourceRange range, const RowGroup& rows, const EvenChannels& channels,
                    GroupSums& sums);
 

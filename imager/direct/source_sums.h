@@ -8,9 +8,9 @@
 
 namespace misfit::imager {
 
-/// The visibilities of `sources` as their definition has them, added up [row][channel], in Jy; w is taken as 0 where it is not
-/// wanted. Double precision throughout: each source is right to 1e-12 of its flux and to the rounding of its phase, 2πi times
-/// 1e-15 of |ul| + |vm| + |w(n−1)|. The same bits with any number of threads.
+/// The visibilities of `sources` by their definition, added up [row][channel], in Jy; w is taken as 0 unless `with_w`. Double
+/// precision throughout: each source is right to 1e-12 of its flux and to the rounding of its phase, 2πi times 1e-15 of
+/// |ul| + |vm| + |w(n−1)|. The same bits with any number of threads.
 std::vector<std::complex<double>> predict_sources(const std::vector<Source>& sources, const SampleCoordinates& at, int threads,
                                                   bool with_w = true);
 

@@ -5,8 +5,8 @@
 
 namespace misfit::imager {
 
-/// `count` pixels above the horizon at random, always the same; fewer where hardly any is, and each of them once where the
-/// image has no more than `count`.
+/// `count` pixels above the horizon at random, always the same; fewer where hardly any are above it, and each pixel once where
+/// the image has no more than `count`.
 std::vector<Pixel> random_pixels(const ImageGeometry& geometry, int count);
 
 /// How far an image is from direct sums at some of its pixels, in Jy/beam.
@@ -15,11 +15,11 @@ struct PixelError {
   double max = 0;
 };
 
-/// Of a dirty image, given Σ w Re[…] at the pixels.
+/// The error of a dirty image, given Σ w Re[…] at the pixels.
 PixelError pixel_error(const Image& dirty, const std::vector<Pixel>& pixels, const std::vector<double>& direct_sums,
                        const Normalisation& by);
 
-/// The same over the RMS of the whole dirty image; 0 of an image of zeros that is exact.
+/// The error over the RMS of the whole dirty image; 0 for an image of zeros that is exact.
 PixelError relative_pixel_error(const PixelError& error, const Image& dirty);
 
 /// Measured differences from the direct transform, w included.

@@ -10,8 +10,7 @@
 
 namespace misfit::imager {
 
-/// What a FITS header says of an axis: pixel p, counted from 1, has the value reference_value + (p − reference_pixel) ·
-/// increment.
+/// An axis of a FITS header: pixel p, counted from 1, has the value reference_value + (p − reference_pixel) · increment.
 struct FitsAxis {
   std::string type;
   std::string unit;
@@ -37,10 +36,11 @@ struct FitsPlanes {
   FitsSteps steps;
 };
 
-/// Axes that the header describes beyond those of pixels (FITS 4.0, section 8.2) have one pixel, and say of all pixels which
-/// Stokes parameter and frequency they are of. Throws std::runtime_error where the primary image has no two axes of pixels, or
-/// beyond those, but one spectral axis (see fits_spectral.h) and one of Stokes parameters, any that is longer than 1 or has a
-/// type, where other axes than the first two depend on each other, or keywords of their steps contradict each other.
+/// Axes that the header describes beyond those of pixels (FITS 4.0, section 8.2) have one pixel, and state the Stokes parameter
+/// and frequency of all pixels. Throws std::runtime_error where the primary image has no two axes of pixels; where it has
+/// further axes that are longer than 1 or have a type, except one spectral axis (see fits_spectral.h) and one of Stokes
+/// parameters; where other axes than the first two depend on each other; or where keywords of their steps contradict each
+/// other.
 FitsPlanes find_planes(const FitsFile& file);
 
 /// Reads an axis, counted from 0. A reference pixel must be stated: readers differ in where it lies otherwise.
@@ -49,8 +49,8 @@ FitsAxis read_axis(const FitsFile& file, const FitsPlanes& planes, std::size_t a
 /// The first pixel of a plane, counted from 1 along each axis.
 std::vector<long> first_pixel(const FitsPlanes& planes, const PlaneIndex& at);
 
-/// In the order of the file; I where it has no such axis. Throws std::runtime_error where a plane is none that Stokes names,
-/// or two are of the same.
+/// The Stokes parameters in the order of the file; I where it has no such axis. Throws std::runtime_error where a plane is of a
+/// parameter that Stokes does not have, or two are of the same.
 std::vector<Stokes> read_stokes(const FitsFile& file, const FitsPlanes& planes);
 
 }  // namespace misfit::imager

@@ -8,8 +8,8 @@ namespace misfit::imager {
 /// Cards of the primary header that write_beams() may add.
 constexpr int fits_beam_cards = 3;
 
-/// Says which beams the planes have: BMAJ, BMIN and BPA in degrees where all share one, CASAMBM = T where they do not. To be
-/// called before write_beam_table().
+/// Writes the beams of planes: BMAJ, BMIN and BPA in degrees where all share one, CASAMBM = T where they do not. To be called
+/// before write_beam_table().
 void write_beams(FitsFile& file, const PlaneBeams& beams);
 
 /// Appends the binary table BEAMS where the planes do not share one beam: a row for each with BMAJ and BMIN in arcsec, BPA in

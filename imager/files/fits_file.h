@@ -20,9 +20,9 @@ struct FitsColumn {
   std::vector<double> values;  ///< [row]
 };
 
-/// A FITS file as CFITSIO has it, at its primary image unless a table was opened, closed when it goes out of scope. Axes count
-/// from 0, pixels along them from 1. Errors are std::runtime_errors that name the path that the user gave: "cannot read a.fits:
-/// …".
+/// A FITS file opened with CFITSIO, at its primary image unless a table was opened; it is closed when this goes out of scope.
+/// Axes count from 0, pixels along them from 1. Errors are std::runtime_errors that name the path that the user gave: "cannot
+/// read a.fits: …".
 class FitsFile {
  public:
   /// `doing`: "read" or "write".
@@ -31,16 +31,16 @@ class FitsFile {
   FitsFile& operator=(const FitsFile&) = delete;
   ~FitsFile();
 
-  /// The file of this name, as it stands: nothing in it is expanded.
+  /// Make or open the file of this name, taken literally: nothing in it is expanded.
   void create(const std::string& name);
   void open(const std::string& name);
   void close();
-  /// Lets what is not yet written of a file be lost: CFITSIO otherwise fills a file that is closed early up to its full size.
+  /// Gives up what is not yet written of a file: CFITSIO otherwise fills a file that is closed early up to its full size.
   void abandon();
   [[noreturn]] void fail(const std::string& reason) const;
 
   void write_number(const std::string& key, double value, const std::string& comment = "");
-  /// An empty text stands for what is not known, and is left out.
+  /// An empty text stands for an unknown value, and is left out.
   void write_text(const std::string& key, const std::string& value, const std::string& comment = "");
   void write_integer(const std::string& key, int value, const std::string& comment = "");
   void write_flag(const std::string& key, bool value, const std::string& comment = "");
@@ -48,18 +48,19 @@ class FitsFile {
   /// Leaves room for so many more cards, so that those written after pixels do not move them.
   void reserve_cards(int count);
   /// The value of a card; none where there is none, or it has no value. Throws where it is no finite number, and where several
-  /// cards have this key and other values, of which readers take one or the other.
+  /// cards have this key and different values, of which readers take one or another.
   std::optional<double> number(const std::string& key) const;
   double needed_number(const std::string& key) const;
-  /// Empty where there is none, with ? for control characters. Throws where several cards have this key and other values.
+  /// The text of a card, with ? for control characters; empty where there is none. Throws where several cards have this key and
+  /// different values.
   std::string text(const std::string& key) const;
 
   void create_image(std::vector<long> size, PixelFormat format);
-  /// From the pixel `first` on, the first axis fastest.
+  /// Writes pixels from `first` on, the first axis fastest.
   void write_pixels(std::vector<long> first, const std::vector<double>& pixels);
   /// The length of each axis.
   std::vector<long> size() const;
-  /// As many as `pixels` holds. Blanks are NaN.
+  /// Reads as many pixels as `pixels` holds. Blanks become NaN.
   void read_pixels(std::vector<long> first, std::vector<double>& pixels) const;
 
   /// Appends a binary table, whose columns have one length, and goes there.
@@ -68,7 +69,7 @@ class FitsFile {
   bool open_table(const std::string& name);
   /// Goes to the primary image.
   void open_image();
-  /// Throws where it has more than `most` rows.
+  /// The column of a table. Throws where it has more than `most` rows.
   std::vector<double> column(const std::string& name, std::size_t most) const;
 
  private:

@@ -6,7 +6,7 @@
 
 namespace misfit::imager {
 
-/// Writes what `header` holds but for its history, for an image with the axes RA---SIN, DEC--SIN, FREQ and STOKES.
+/// Writes `header` without its history, for an image with the axes RA---SIN, DEC--SIN, FREQ and STOKES.
 void write_header(FitsFile& file, const ImageHeader& header);
 
 void write_cards(FitsFile& file, const std::vector<HeaderCard>& cards);

@@ -12,7 +12,7 @@
 
 namespace misfit::imager {
 
-/// An image on the sky with what its header states: one plane of an ImageHeader's.
+/// An image on the sky with its header: one plane of an image with an ImageHeader.
 struct SkyImage {
   Image image;
   ImageGeometry geometry;
@@ -28,7 +28,7 @@ struct SkyImage {
 /// Writes `image` to `path` as create_fits_image() does.
 void write_fits(const SkyImage& image, const std::string& path, PixelFormat format);
 
-/// The same of images that differ in their pixels and Stokes parameters alone, as planes along the STOKES axis. Throws
+/// Writes images that differ in their pixels and Stokes parameters alone, as planes along the STOKES axis. Throws
 /// std::invalid_argument when there are none, they differ in size, or their codes are not evenly spaced.
 void write_fits(const std::vector<SkyImage>& planes, const std::string& path, PixelFormat format);
 
@@ -39,7 +39,7 @@ std::vector<SkyImage> read_channel(const ImageReader& file, int channel);
 /// path where there are more.
 SkyImage read_fits(const std::string& path);
 
-/// The same for each plane of an image whose STOKES axis may be longer than 1, in the order of the file.
+/// Reads each plane, and its beam, of an image whose STOKES axis may be longer than 1, in the order of the file.
 std::vector<SkyImage> read_stokes_images(const std::string& path);
 
 }  // namespace misfit::imager

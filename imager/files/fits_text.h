@@ -5,7 +5,7 @@
 
 namespace misfit::imager {
 
-/// What a FITS header may hold of `text` (FITS 4.0, section 4.1.2): other letters, of UTF-8 or of one byte, become ?.
+/// `text` as a FITS header may hold it (FITS 4.0, section 4.1.2): other letters, of UTF-8 or of one byte, become ?.
 std::string header_text(const std::string& text);
 
 /// A number as headers hold it (FITS 4.0, section 4.2.4), whatever the locale: "1.5", "+1.5D3"; infinite where it is too large.
@@ -18,7 +18,8 @@ std::string bare_header_value(std::string value);
 /// Whether two such values say the same: "33" and "33.0".
 bool same_header_value(const std::string& one, const std::string& other);
 
-/// How a file is compressed that begins like this, and what uncompresses it, in words; empty where it is not.
+/// The compression of a file that begins like this, and the program that uncompresses it, in words; empty where it is not
+/// compressed.
 std::string compression_of(const std::string& begin);
 
 }  // namespace misfit::imager

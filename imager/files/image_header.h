@@ -17,10 +17,10 @@ struct HeaderCard {
   std::string comment;
 };
 
-/// Which term of a spectrum's polynomial an image belongs to.
+/// The term of a spectrum's polynomial that an image belongs to.
 struct TaylorTerm {
   int order = 0;
-  int terms = 1;  ///< of the polynomial; 1: the image is of no single term
+  int terms = 1;  ///< of the polynomial; 1: the image is not one of several terms
 
   bool several() const { return terms > 1; }
 };
@@ -32,14 +32,14 @@ inline constexpr const char* taylor_terms_key = "NTERMS";
 /// Keyword of a mosaic's model whose pixels are the sky times its primary beam: 1.
 inline constexpr const char* flat_noise_key = "FLATNOIS";
 
-/// What a header says of its Taylor term, as numbers that may be anything: none where it does not say that there are several.
+/// The Taylor term that a header states, by numbers that may be anything: none where it does not state several terms.
 inline TaylorTerm stated_taylor_term(double order, double terms) {
   constexpr double most = 1000;
   if (!(order >= 0 && order < most && terms > 1 && terms < most)) return {};
   return {static_cast<int>(order), static_cast<int>(terms)};
 }
 
-/// What the planes of an image share, and where each lies along frequency and Stokes parameters.
+/// The data that the planes of an image share, and the frequency and Stokes parameter of each.
 struct ImageHeader {
   ImageGeometry geometry;
   Observation observation;

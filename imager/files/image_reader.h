@@ -14,11 +14,11 @@ namespace misfit::imager {
 class ImageReader {
  public:
   virtual ~ImageReader() = default;
-  /// What the file says, but for its cards and history.
+  /// The file's header, without its cards and history.
   virtual const ImageHeader& header() const = 0;
   /// Where the pixels lie on the sky; none where the file does not say.
   virtual const std::optional<SkyGrid>& grid() const = 0;
-  /// Throws std::runtime_error that names the file where its beams cannot be read, or are of other planes.
+  /// The beam of a plane. Throws std::runtime_error that names the file where its beams cannot be read, or are of other planes.
   virtual std::optional<Beam> beam(const PlaneIndex& at) const = 0;
   /// The pixels of a plane; NaN where they have no value. Throws std::runtime_error that names the file where they cannot be
   /// read.

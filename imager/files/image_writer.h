@@ -21,7 +21,7 @@ enum class PixelFormat { float32, float64 };
 class ImageReader;
 
 /// An image on its way into a file, plane by plane, so that no more than one need be in memory. The file has its final name
-/// once finish() returns; a writer that goes before leaves nothing.
+/// once finish() returns; a writer that is destroyed before leaves nothing.
 class ImageWriter {
  public:
   virtual ~ImageWriter() = default;
@@ -29,10 +29,10 @@ class ImageWriter {
   /// beam. Throws std::invalid_argument for a plane that the header does not have, or pixels of another shape;
   /// std::runtime_error that names the file where it cannot be written.
   virtual void write(const PlaneIndex& at, const Image& image, const std::optional<Beam>& beam) = 0;
-  /// Where files have masks: they also leave out pixels that have no value in `other`, an image as large with as many channels,
-  /// of one Stokes parameter, which counts for all. After the last plane.
+  /// Files with masks also mask pixels that have no value in `other`, an image of the same size and channels, whose one Stokes
+  /// parameter counts for all. To be called after the last plane.
   virtual void mask_like(const ImageReader& /*other*/) {}
-  /// Cards beside the header's, of what is known only when the planes are made.
+  /// Adds cards to the header's, for numbers that are known only when the planes are made.
   virtual void add_cards(const std::vector<HeaderCard>& cards) = 0;
   /// To be called once, after all else.
   virtual void finish() = 0;

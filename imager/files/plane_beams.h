@@ -9,8 +9,8 @@
 
 namespace misfit::imager {
 
-/// What stands in files for no beam: a circle of this width. tclean writes it, since casacore opens no image, CASA's or FITS,
-/// with a beam of no width.
+/// A circle of this width stands for no beam in files. tclean writes it, since casacore opens no image, CASA's or FITS, with a
+/// beam of no width.
 constexpr double no_beam_arcsec = 1e-6;
 inline bool stands_for_no_beam(double major_arcsec) {
   return !(major_arcsec > 1.001 * no_beam_arcsec);
@@ -39,7 +39,7 @@ class PlaneBeams {
       if (beam) return true;
     return false;
   }
-  /// The beam that every plane has; nothing where one has another, or none.
+  /// The beam that every plane has; nothing where planes have different beams, or none.
   std::optional<Beam> shared() const {
     for (const std::optional<Beam>& beam : beam_)
       if (!beam || !same_beam(*beam, *beam_.front())) return std::nullopt;

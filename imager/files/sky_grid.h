@@ -12,7 +12,7 @@ namespace misfit::imager {
 /// lies R(ψ) from the reference in the plane of projection: SIN sin ψ, TAN tan ψ, STG 2 tan(ψ/2), ARC ψ, ZEA 2 sin(ψ/2).
 enum class Projection { sin, tan, stg, arc, zea };
 
-/// The three letters that FITS has for it: "SIN".
+/// FITS's three letters for a projection: "SIN".
 std::string projection_name(Projection projection);
 /// None where the letters stand for another projection.
 std::optional<Projection> projection_named(const std::string& letters);
@@ -25,8 +25,8 @@ struct PixelPlace {
 
 /// Where the pixels of an image lie on the sky, as its file states it. Pixel (column, row) is the point
 ///     (x, y) = step · (column − reference_pixel.column, row − reference_pixel.row)
-/// of the plane of projection, x to the east and y to the north of `reference`, rad, where directions lie as the projection has
-/// them. An ImageGeometry is the grid in SIN whose step is (−cell, 0; 0, cell · aspect).
+/// of the plane of projection, x to the east and y to the north of `reference`, rad; the projection maps directions to it. An
+/// ImageGeometry is the grid in SIN whose step is (−cell, 0; 0, cell · aspect).
 struct SkyGrid {
   int width = 0;
   int height = 0;
@@ -45,31 +45,31 @@ struct SkyGrid {
   double position_angle_rad() const { return std::atan2(step[0][1], step[1][1]); }
   /// Whether the sky is seen as from outside, with east on the right where north is up.
   bool is_mirrored() const { return step[0][0] * step[1][1] - step[0][1] * step[1][0] > 0; }
-  /// Whether pixels have an area, and numbers reach all of them.
+  /// Whether pixels have an area, and the farthest of them a finite place.
   bool is_regular() const;
 };
 
-/// Turns the step and the slant of a grid, stated about a native longitude of the celestial pole (LONPOLE) other than 180
-/// degrees, to the east and north that SkyGrid means. There the pole lies towards (sin φ, −cos φ) (equations 12 and 13).
+/// Turns the step and the slant of a grid whose native longitude φ of the celestial pole (LONPOLE) is not 180 degrees to
+/// SkyGrid's east and north. Before the turn the pole lies towards (sin φ, −cos φ) (equations 12 and 13).
 void set_pole(SkyGrid& grid, double longitude_rad);
 
 /// The grid of an image's pixels.
 SkyGrid grid_of(const ImageGeometry& geometry);
 
-/// How far pixels may lie from where an upright geometry has them, in pixels, for it to stand for a grid. What it does to
-/// predicted visibilities depends on how long baselines are.
+/// The farthest, in pixels, that pixels of a grid may lie from their places in an upright geometry that stands for it. The
+/// effect on predicted visibilities depends on the length of baselines.
 inline constexpr double same_place_pixels = 1e-3;
 
 /// The nearest that an ImageGeometry in ICRS, FK5 or FK4 comes to a grid: it has the grid's reference and its steps along
 /// columns and rows, in SIN, north up and east on the left.
 struct UprightGeometry {
   ImageGeometry geometry;
-  double off_pixels = 0;   ///< between a pixel of the grid and that of the geometry, at most; infinite where they are not alike
-  std::string difference;  ///< what the grid has instead, above all, and what was expected; empty where pixels agree
+  double off_pixels = 0;   ///< largest distance of a pixel from its place in the geometry; infinite where they are not alike
+  std::string difference;  ///< the main difference of the grid, and what was expected; empty where pixels agree
 };
 UprightGeometry upright_geometry(const SkyGrid& grid);
 
-/// Which images are opened: those whose pixels an ImageGeometry describes, or those on any grid and on none, whose header's
+/// The images that are opened: images whose pixels an ImageGeometry describes, or images on any grid or none, whose header's
 /// geometry holds their size alone.
 enum class Grids { upright, any };
 

@@ -8,7 +8,7 @@
 
 namespace misfit::imager {
 
-/// Which planes of an image have been written, and their beams: what every ImageWriter keeps.
+/// The planes of an image that have been written, and their beams, which every ImageWriter keeps.
 class WrittenPlanes {
  public:
   /// Throws std::invalid_argument where the header has no pixels or no planes.

@@ -8,17 +8,17 @@
 
 namespace misfit::imager {
 
-/// A plane of pixels as the function of places between them that its spectrum makes it:
+/// A plane of pixels, continued to places between them by its spectrum:
 ///     f(x, y) = Σ_jk F_jk g(u_j) g(v_k) exp(2πi(u_j x + v_k y)),   F the DFT of the pixels, u and v in cycles a pixel,
-/// where g is 1 up to 0.4, falls as a raised cosine to 0 at 0.6, and g(½ + t) + g(½ − t) = 1. A plane that has nothing beyond
-/// 0.4 is interpolated exactly; of a Gaussian four pixels wide 2e-5 lies beyond, of three 1e-3. Pixels keep their values
-/// whatever they hold. Evaluated by degridding: F is divided by the taper of a least-misfit function of 8 cells and
-/// transformed to twice as many pixels, and 8 × 8 of these make a value, right to 1.3e-7 of the plane (RMS). Up to 37 bytes a
-/// pixel while it is made, 17 afterwards.
+/// where g is 1 up to 0.4, falls as a raised cosine to 0 at 0.6, and g(½ + t) + g(½ − t) = 1. A plane whose spectrum is 0
+/// beyond 0.4 is interpolated exactly; a Gaussian four pixels wide has 2e-5 of it beyond 0.4, one three pixels wide 1e-3.
+/// Pixels keep their values in any case. Evaluated by degridding: F is divided by the taper of a least-misfit function of 8
+/// cells and transformed to twice as many pixels, and 8 × 8 of these make a value, right to 1.3e-7 of the plane (RMS). Up to 37
+/// bytes a pixel while it is made, 17 afterwards.
 class BandLimitedImage {
  public:
-  /// Values are undefined within so many pixels of one whose number is not known, and of the border: what lies beyond counts as
-  /// 0, and where there is something else instead it would change them by more than 1 % of that.
+  /// Values are undefined within so many pixels of an unknown pixel, and of the border: these count as 0, and any other number
+  /// there would change the values by more than 1 % of it.
   static constexpr int margin = 8;
 
   /// `pixels` are all that are known, NaN elsewhere. `shown`, of the same size, is NaN where a known pixel only serves its
@@ -40,8 +40,8 @@ class BandLimitedImage {
   std::vector<float> fine_;             ///< [2 height][2 width], on half pixels, without the taper
 };
 
-/// The image on other pixels, the ones whose places in the image are map(row, column). NaN where `where`, which has their
-/// number, is NaN, and where the image is undefined.
+/// The image on other pixels, whose places in the image are map(row, column). NaN where `where`, which has their size, is NaN,
+/// and where the image is undefined.
 Image regridded(const BandLimitedImage& image, const GridMap& map, const Image& where, int threads);
 
 }  // namespace misfit::imager

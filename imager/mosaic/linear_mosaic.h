@@ -19,15 +19,15 @@ struct MosaicPlane {
   Image beam;    ///< √(W/max W), the joint beam
 };
 
-/// The sky that agrees best, in the sense of least squares, with what pointings p saw of it, pixel by pixel:
+/// The sky that fits the images of pointings p best, by least squares, pixel by pixel:
 ///     sky = Σ_p B_p D_p/σ_p² / W,   W = Σ_p B_p²/σ_p²
 /// (Cornwell 1988, A&A 202, 316; Sault, Staveley-Smith & Brouw 1996, A&AS 120, 375, equation 5). A point of flux S at x₀ that
 /// pointings have restored with the beam G is S G(x − x₀) Σ_p B_p(x₀) B_p(x)/σ_p² / W(x): S at x₀ itself, and by the variance
 /// of G times the gradient of the logarithm beside it, as in every image that is divided by a beam.
 class LinearMosaic {
  public:
-  /// A pointing takes part where its own beam is this or more. Below, where fits to measured beams end, a beam is wrong by much
-  /// of itself, and W would grow by a 400th of the pointing's own at most.
+  /// A pointing takes part where its own beam is this or more. Below, where fits to measured beams end, the beam's relative
+  /// error is large, and W would grow by at most a 400th of the pointing's own.
   static constexpr double least_beam = 0.05;
 
   LinearMosaic(int width, int height) : sum_(width, height), weight_(width, height) {}

@@ -9,7 +9,7 @@
 
 namespace misfit::imager {
 
-/// True where no beam is longer than another by more than a thousandth, as all compare with the first.
+/// True where no beam is wider than another by more than a thousandth; all are compared by way of the first.
 bool of_one_resolution(const std::vector<Beam>& beams);
 
 /// From one beam to another that encloses it, both with position angles about the grid's north.
@@ -22,8 +22,8 @@ struct BeamChange {
 /// `to`: with the covariances Σ of the beams,
 ///     F → F · exp(−2π² fᵀ (Σ_to − Σ_from) f) · area_to / area_from
 /// at the frequency f. A point source keeps its peak. Directions in which `to` is shorter, as rounding may leave it, stay as
-/// they are. NaN counts as 0, and so does what lies beyond the border; pixels are NaN where more than 1 % of their Gaussian
-/// lies on these. The same bits for any number of threads.
+/// they are. NaN counts as 0, and so do places beyond the border; pixels are NaN where more than 1 % of their Gaussian lies on
+/// these. The same bits for any number of threads.
 Image with_beam(const Image& image, const BeamChange& change, const SkyGrid& grid, int threads);
 
 }  // namespace misfit::imager

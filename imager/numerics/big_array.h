@@ -12,7 +12,7 @@ class BigMemory {
   BigMemory(const BigMemory&) = delete;
   BigMemory& operator=(const BigMemory&) = delete;
 
-  /// Room for that many bytes, their content lost where more room is needed.
+  /// Makes room for that many bytes; the content is lost where more room is needed.
   void reserve(std::size_t bytes);
   void* data() { return memory_.get(); }
   const void* data() const { return memory_.get(); }
@@ -26,7 +26,7 @@ class BigMemory {
   std::size_t bytes_ = 0;
 };
 
-/// The same as an array of values.
+/// BigMemory as an array of values.
 template <typename T>
 class BigArray {
  public:

@@ -8,10 +8,10 @@
 
 namespace misfit::imager {
 
-/// Told after every block how many samples of how many are done. It may throw to end the work.
+/// Called after every block with the samples done and their total. It may throw to end the work.
 using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
-/// What work is done with, and whom it tells how it goes: handed on from a run to all who work for it.
+/// The threads that work may use, and whom it tells of its progress: handed on from a run to all its functions.
 struct Context {
   int threads = 1;
   StageTimes* times = nullptr;  ///< where stages are timed; null: nowhere

@@ -10,13 +10,13 @@ namespace misfit::imager {
 /// are done; the first exception that a body throws is rethrown, and no further i is begun.
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t i)>& body);
 
-/// The same, and take(i) for each i once its body is done, in the order of i and one at a time. No body begins that is more
-/// than twice the threads ahead of what was taken.
+/// Runs body(i) as parallel_for does, and take(i) for each i once its body is done, in the order of i and one at a time. No
+/// body begins for an i more than 2 · `threads` ahead of the last one taken.
 void parallel_in_order(std::size_t count, int threads, const std::function<void(std::size_t i)>& body,
                        const std::function<void(std::size_t i)>& take);
 
-/// While it lives, parallel_for calls `check` now and then, on the thread that made this and where that one calls it; what the
-/// check throws ends the loop as a body's exception does.
+/// While it lives, loops of parallel_for that its own thread runs call `check` now and then, on that thread; an exception of
+/// the check ends the loop as a body's exception does.
 class StopCheck {
  public:
   explicit StopCheck(std::function<void()> check);
@@ -30,11 +30,11 @@ class StopCheck {
  private:
   std::function<void()> check_;
   std::chrono::steady_clock::time_point last_;
-  StopCheck* outer_;  ///< that this one stands for while it lives
+  StopCheck* outer_;  ///< that this one replaces while it lives
 };
 
-/// The number of threads that `--threads 0` means: all cores that this process may use, or its share of them where so many
-/// processes may.
+/// The number of threads that `--threads 0` means: all cores that this process may use, or its share of them where `processes`
+/// use them.
 int available_threads(int processes = 1);
 
 }  // namespace misfit::imager

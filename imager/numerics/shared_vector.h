@@ -28,7 +28,7 @@ class SharedVector {
   const T& front() const { return values_->front(); }
   const T& back() const { return values_->back(); }
 
-  /// To be changed, by one thread: values of its own from now on.
+  /// The values, to be changed by one thread: this copy shares them no longer.
   std::vector<T>& edit() {
     if (!values_)
       values_ = std::make_shared<std::vector<T>>();

@@ -6,7 +6,7 @@
 
 namespace misfit::imager {
 
-/// Things that threads use one after the other, made when none is free: memory fresh from the system is dear.
+/// Things that threads use one after the other, made when none is free: fresh memory from the system is costly.
 template <typename T>
 class Spares {
  public:

@@ -70,7 +70,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Adds what a step takes to a total.
+/// Adds the seconds that a step takes to a total.
 template <typename Step>
 void add_seconds_of(double& total, const Step& step) {
   const Stopwatch watch;
@@ -82,7 +82,7 @@ void add_seconds_of(double& total, const Step& step) {
 class StageTimer {
  public:
   StageTimer(StageTimes& times, std::string stage) : StageTimer(&times, std::move(stage)) {}
-  /// Of null nothing is timed.
+  /// Nothing is timed where `times` is null.
   StageTimer(StageTimes* times, std::string stage) : times_(times), stage_(std::move(stage)) {}
   ~StageTimer() {
     if (times_ != nullptr) times_->add(stage_, watch_.seconds());

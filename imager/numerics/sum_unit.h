@@ -11,7 +11,7 @@ namespace misfit::imager {
 template <typename Real>
 class SumUnit {
  public:
-  /// Makes ready for terms whose magnitudes add up to `size`. Returns what the sums so far are to be multiplied by.
+  /// Makes ready for terms whose magnitudes add up to `size`. Returns the factor that the sums so far are to be multiplied by.
   double make_room(double size) {
     total_ += size;
     if (!std::is_same_v<Real, float> || !(total_ > 0) || !std::isfinite(total_)) return 1;

@@ -9,27 +9,27 @@
 
 namespace misfit::imager {
 
-/// What gridding makes of sources outside an image: the image less the exact one of the same data.
+/// The errors that gridding makes of sources outside an image: the image less the exact one of the same data.
 ///
 /// A kernel with the taper c and correction h turns the exact image D along each axis, x being the offset from the middle of a
 /// facet over the size of the FFT, into
 ///   h(x) Σ_r C(r−ν) exp(2πi(r−ν)x) = Σ_n H_n(x) exp(2πinν),  H_n(x) = h(x) c(x+n),  n whole (Poisson),
 /// so that the error of a source of 1 Jy at X is Σ_{n,m} [H_n(x) H_m(y) − δ_{n0} δ_{m0}] · PSF(x+n − X, y+m − Y): copies of the
-/// source with all their sidelobes, and its own sidelobes by as much as the correction misses them. Its own sidelobes as they
-/// are belong to the exact image too, and are no error.
+/// source with all their sidelobes, and its own sidelobes times the error of the correction. The source's own true sidelobes
+/// belong to the exact image too, and are no error.
 ///
-/// A copy that falls upon the image shows there as a point; one that falls beside it, into the padding, by its sidelobes, and
-/// so do all others. Their levels are added in squares, as their phases are unrelated: the level of a pixel is
+/// A copy that falls upon the image shows there as a point; all other copies, such as those in the padding, show by their
+/// sidelobes. Their levels are added in squares, as their phases are unrelated: the level of a pixel is
 ///   √(Σ_{n,m} [H_n(x) H_m(y) − δ]² · P²(distance)),
 /// P being the highest sidelobe from that distance on. Terms far off are many and add up by Parseval's sum, since with the
 /// map error ℓ (kernels/map_error.h) Σ_n H_n² = H_0 = 1 − ℓ: all of them together are 1 − (1−ℓ_u)(1−ℓ_v). Of N equal terms the
 /// sum can exceed this √N times; that takes four of them, each with its highest sidelobe upon one pixel with one sign, to be
-/// twice as high. A w axis blurs copies, since n − 1 is another where the source is: what they would be without that is an
-/// upper bound; and it brings an ℓ of its own, as tables and rounding do. Without a w axis the source's own sidelobes differ
-/// from the exact ones by the phase 2πw(n−1) of the pixel, φ at most: they count 2 sin(φ/2) times.
+/// twice as high. A w axis blurs copies, since n − 1 differs at the source: their level without that is an upper bound. A w
+/// axis also has an ℓ of its own, as tables and rounding do. Without a w axis the source's own sidelobes differ from the exact
+/// ones by the phase 2πw(n−1) of the pixel, φ at most: they count 2 sin(φ/2) times.
 class AliasLevels {
  public:
-  /// Of sources within `field`, whose places are known to half a pixel of it.
+  /// The levels of sources within `field`, whose places are known to half a pixel of it.
   AliasLevels(const GriddingPlan& plan, const ImageGeometry& field, Sidelobes sidelobes);
 
   /// The largest pixel of the error, in Jy/beam, that a source of 1 Jy there leaves in any facet.
@@ -51,12 +51,12 @@ class AliasLevels {
 
   std::vector<Facet> facets_;
   Sidelobes sidelobes_;
-  double place_pixels_;  ///< of the image, to which places are known
+  double place_pixels_;  ///< pixels of the image to which places are known
   Axis u_;
   Axis v_;
-  double out_of_phase_;    ///< how far own sidelobes are wrong at most, as a part, where w is left out
+  double out_of_phase_;    ///< the largest relative error of a source's own sidelobes where w is left out
   double rounding_;        ///< taps are rounded alike wherever they are alike, which makes copies
-  double missed_besides_;  ///< ℓ of all that is not a matter of place: w, tables, rounding
+  double missed_besides_;  ///< ℓ of all that does not depend on place: w, tables, rounding
 };
 
 }  // namespace misfit::imager

@@ -8,16 +8,16 @@
 
 namespace misfit::imager {
 
-/// A source outside an image, and what may show of it there through the kernel.
+/// A source outside an image, and the alias that the kernel may leave of it in the image.
 struct OutsideSource {
   Source source;
-  double alias_jy = 0;     ///< the largest pixel of what gridding makes of it, Jy/beam; see AliasLevels
-  bool at_border = false;  ///< of the field that it was found in: it may lie beyond, and be brighter
+  double alias_jy = 0;     ///< the largest pixel of its alias, Jy/beam; see AliasLevels
+  bool at_border = false;  ///< at the border of the field where it was found: it may lie beyond, and be brighter
 };
 
-/// The components that CLEAN found in an image of a wider field, `found_in`, those close to a much brighter one taken together
-/// with it, which lie more than half of its pixels outside `image` and have `least_jy` or more of either sign.
-/// The one with the highest alias comes first.
+/// The sources among the components that CLEAN found in an image of a wider field, `found_in`: components close to a much
+/// brighter one are taken together with it, and those count that lie more than half a pixel of `found_in` outside `image` and
+/// have `least_jy` or more of either sign. The source with the highest alias comes first.
 std::vector<OutsideSource> sources_outside(const std::vector<Component>& components, const ImageGeometry& found_in,
                                            const ImageGeometry& image, const AliasLevels& aliases, double least_jy);
 

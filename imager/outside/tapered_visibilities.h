@@ -5,8 +5,8 @@
 namespace misfit::imager {
 
 /// Another source with weights times exp(−ln 100 · (u² + v²) (2 cell)²): a hundredth at |u| = 1/(2 cell), beyond which an image
-/// of this cell has none. What is left fits its pixels: the main lobe of the PSF is 2.3 of them wide or more, and the edge of
-/// the grid cuts off nothing that would ring.
+/// of this cell has none. The tapered data suit its pixels: the main lobe of the PSF is 2.3 pixels wide or more, and the edge
+/// of the grid cuts off nothing that would ring.
 class TaperedVisibilities : public VisibilitySource {
  public:
   /// `from` must outlive this.

@@ -9,12 +9,12 @@
 
 namespace misfit::imager {
 
-/// By how much samples respond to directions as the definition of a plan's images has it; null: all alike.
+/// The response of samples to directions in the definition of a plan's images; null: all samples respond alike.
 std::shared_ptr<const SampleResponse> response_of(const GriddingPlan& plan);
 
 /// Errors of a dirty image that theory gives, relative to its RMS.
 struct TheoreticalError {
-  double expected_rms = 0;  ///< √(2E) for data with random phases, on the larger of the image's RMS and that of random data
+  double expected_rms = 0;  ///< √(2E) for data with random phases, on the larger of the image's RMS and random data's RMS
   double bound_rms = 0;     ///< holds whatever the data
   double bound_max = 0;     ///< of the worst pixel, whatever the data
 };
@@ -28,21 +28,22 @@ struct AccurateImages {
   GriddingPlan plan;
   std::shared_ptr<const PlannedTransform> transform;
   DirtyImages images;
-  double dirty_accuracy = 0;  ///< of the dirty images, where CLEAN alone is to begin with them; 0 = that of the plan
-  double judged_error = 0;    ///< over the images' RMS, where they were made twice: by theory, or twice that of pixels checked
-  bool promise_kept = true;   ///< whether the gridding error is within the accuracy, judged by the images that came out
+  double dirty_accuracy = 0;  ///< of the dirty images, where CLEAN alone is to begin with them; 0 = the plan's
+  double judged_error = 0;  ///< over the images' RMS, where they were made twice: by theory, or twice the checked pixels' error
+  bool promise_kept = true;  ///< whether the gridding error is within the accuracy, judged by the images made
 };
 
 /// Dirty images of the Stokes parameters that `plan` was asked for, and PSF, to its accuracy. Where an image turns out weak
-/// against its data the kernel's error weighs more than it does on random data. Two things tell: the image may be weaker than
-/// random data would give; or weaker than the PSF's RMS times that of the visibilities, as when they belong to a source
-/// outside, whose alias adds up in phase. The second may as well be noise, so that a few pixels are then compared with direct
-/// sums (without w where the transform has no w axis). Where the error is too large the images are made once more with a kernel
-/// that is right by as much, or, where there is none, by the best. Stages timed: "plan", "check pixels", and those of
-/// make_dirty_images.
+/// against its data the kernel's error weighs more than it does on random data. There are two signs of this: the image may be
+/// weaker than an image of random data; or weaker than the PSF's RMS times the visibilities' RMS, as when they belong to a
+/// source outside, whose alias adds up in phase. The second may also be by noise, so that a few pixels are then compared with
+/// direct sums (without w where the transform has no w axis). Where the error is too large the images are made once more with a
+/// kernel that is more exact by the factor needed, or, where there is none, with the best. Stages timed: "plan", "check
+/// pixels", and those of make_dirty_images.
 ///
-/// `transform`, if there is one, is that of `plan`, which other images have been made by. Images that are taken are not made,
-/// and need not be planned for; of a residual that is taken no error is known but that of the comparison, see ComparedPixels.
+/// `transform`, if there is one, is the transform of `plan`, by which other images have been made. Images that are taken are
+/// not made, and need not be planned for; of a residual that is taken only the error of the comparison is known, see
+/// ComparedPixels.
 ///
 /// Dirty images that only `begin_clean` need not be as exact: where the PSF has a transform of its own, they are made together
 /// with it, unless that leaves open whether they will be weak against their data.

@@ -14,25 +14,25 @@ namespace misfit::imager {
 struct AxisKernel {
   kernels::Kernel kernel;
   kernels::Misfit misfit;   ///< over this image's pixels
-  double noise_gain = 1;    ///< RMS over them
-  double largest_gain = 1;  ///< at the one where it is largest
+  double noise_gain = 1;    ///< RMS over the pixels
+  double largest_gain = 1;  ///< at the pixel where it is largest
 };
 
-inline constexpr int continuum = 128;  ///< fewer pixels are no mean over the field, and need no wide kernels
+inline constexpr int continuum = 128;  ///< fewer pixels give no mean over the field, and need no wide kernels
 
-/// Over the pixels of an image. Over many the kernel's own means over |x| ≤ x0 serve, as they do where it was made for another
-/// x0.
+/// The misfit over the pixels of an image. For many pixels it is the kernel's own, over |x| ≤ x0, also where it was made for
+/// another x0.
 kernels::Misfit axis_misfit(const kernels::Kernel& kernel, int pixels, int fft_size);
 
 /// The kernels of one family, of which each is made and judged once, when it is first asked for.
 class KernelShelf {
  public:
-  /// Where there is a `lookup`, kernels are judged as its tables give them.
+  /// Where there is a `lookup`, kernels are judged by its tables.
   KernelShelf(kernels::KernelFamily family, const std::optional<kernels::TableOptions>& lookup);
 
-  /// Over `pixels` of an FFT of a given size.
+  /// The kernel of `width` over `pixels` of an FFT of a given size.
   const AxisKernel& axis(int width, int pixels, int fft_size);
-  /// Over many pixels of an FFT of about this padding; over planes.
+  /// The kernel of `width` over many pixels of an FFT of about this padding; or over planes.
   const AxisKernel& axis(int width, double padding);
 
  private:

@@ -4,7 +4,7 @@
 
 namespace misfit::imager {
 
-/// What gridding and its FFTs have to do, in numbers.
+/// The work of gridding and its FFTs, in numbers.
 struct GriddingWork {
   double samples = 0;  ///< visibilities
   int width = 1;       ///< cells a visibility touches along u and along v
@@ -18,14 +18,15 @@ struct GriddingWork {
   int planes = 1;   ///< FFTs of two dimensions: one for each w plane of each facet
   int gathers = 1;  ///< times that samples are gathered for a w axis and all planes transformed
   int stokes = 1;   ///< images made from the same samples; 0: the PSF alone
-  bool psf = true;  ///< made besides
+  bool psf = true;  ///< whether the PSF is made besides
 
   int images() const { return stokes + (psf ? 1 : 0); }
   bool has_w_axis() const { return width_w > 0; }
 };
 
 /// Time on one core, from counts of operations. The default constants are of one machine, fixed:
-/// what is chosen with them depends on options and data alone. Those of the machine at hand (measure_costs) predict seconds.
+/// choices made with them depend on options and data alone. The constants of the machine at hand (measure_costs) predict
+/// seconds.
 struct CostModel {
   double sample_ns = 15;     ///< a sample's ordering and coordinates
   double cell_ns = 0.15;     ///< a cell of width × padded width in three planes
@@ -35,7 +36,7 @@ struct CostModel {
   double direct_ns = 4;      ///< a term of a direct sum, in double precision
 
   double seconds(const GriddingWork& work) const { return gridding_seconds(work) + fft_seconds(work); }
-  /// Its parts: ordering, taps and cells; and FFTs.
+  /// The parts of seconds(): ordering, taps and cells; and FFTs.
   double gridding_seconds(const GriddingWork& work) const;
   double fft_seconds(const GriddingWork& work) const;
 };

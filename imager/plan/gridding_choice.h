@@ -15,7 +15,7 @@ namespace misfit::imager {
 /// Whether a transform has a w axis: where its phase matters, never, or always.
 enum class Gridder { automatic, standard, wide };
 
-/// That a transform is that of a mosaic, of the same image as the beams.
+/// The request for a mosaic's transform, of the same image as the beams.
 struct MosaicRequest {
   std::shared_ptr<const MosaicBeams> beams;
   int psf_row = 0;  ///< of the pixel whose source the PSF is the response to
@@ -25,12 +25,12 @@ struct MosaicRequest {
   std::size_t pointings() const { return beams->rows().of_fields().size(); }
 };
 
-/// 1 where it is no mosaic.
+/// The number of pointings; 1 where there is no mosaic.
 inline std::size_t pointings_of(const std::shared_ptr<const MosaicRequest>& mosaic) {
   return mosaic ? mosaic->pointings() : 1;
 }
 
-/// What is asked of a transform.
+/// The requirements on a transform.
 struct GriddingRequest {
   ImageGeometry geometry;
   std::shared_ptr<const MosaicRequest> mosaic = {};  ///< null: all samples see all pixels alike
@@ -38,29 +38,29 @@ struct GriddingRequest {
   kernels::KernelFamily kernel = kernels::kernel_family("least-misfit");
   int kernel_width = 0;         ///< cells along u and v; 0 = chosen
   double padding = 0;           ///< FFT size over image size along u and v, at least 1.02; 0 = chosen
-  double least_padding = 1.02;  ///< of those that are chosen from along u and v
+  double least_padding = 1.02;  ///< bounds of the paddings to choose from along u and v
   double most_padding = 10;
   bool best_effort = false;   ///< take the most exact kernel when the accuracy is out of reach
   std::uint64_t samples = 0;  ///< visibilities in a pass
   int stokes = 1;             ///< Stokes parameters, each of which has a dirty image made in the pass; 0: the PSF alone
-  bool psf = true;            ///< made besides
+  bool psf = true;            ///< whether the PSF is made besides
   double psf_accuracy = 0;    ///< of a PSF that may have a transform of its own; 0 = the accuracy
   int threads = 1;
   Gridder gridder = Gridder::automatic;
-  double max_abs_w = 0;                         ///< largest |w| of the samples, in wavelengths
-  std::optional<Precision> precision;           ///< of taps, grid and FFT; chosen where there is none
-  double single_from = 1e-6;                    ///< no less is asked of single precision where it is chosen
-  bool shortest_polynomials = true;             ///< of the lowest degree that costs less than half a percent of E
-  std::optional<kernels::TableOptions> lookup;  ///< tables of the full polynomials in their place
-  bool facets = true;                           ///< a w axis may split the image
+  double max_abs_w = 0;                ///< largest |w| of the samples, in wavelengths
+  std::optional<Precision> precision;  ///< of taps, grid and FFT; chosen where there is none
+  double single_from = 1e-6;           ///< the smallest accuracy for which single precision may be chosen
+  bool shortest_polynomials = true;    ///< whether polynomials have the lowest degree that costs less than half a percent of E
+  std::optional<kernels::TableOptions> lookup;                           ///< tables of the full polynomials instead
+  bool facets = true;                                                    ///< a w axis may split the image
   std::size_t stack_bytes = WideTransformOptions().stack_bytes;          ///< memory for w planes
   std::size_t samples_at_once = WideTransformOptions().samples_at_once;  ///< that a w axis gathers
 };
 
 enum class Rejection { costs_more, not_exact_enough };
 
-/// A neighbour of the choice that was not taken. One that costs more may not have been judged: its width is then the least that
-/// can do.
+/// A neighbour of the choice that was not taken. A neighbour that costs more may not have been judged: its width is then the
+/// least that may be enough.
 struct RejectedCandidate {
   GriddingCandidate candidate;
   Rejection reason = Rejection::costs_more;
@@ -69,8 +69,8 @@ struct RejectedCandidate {
 struct GriddingChoice {
   GriddingCandidate best;  ///< the cheapest that reaches the accuracy, or the most exact
   bool reached = true;
-  double borne_phase_rad = 0;               ///< of w, neglected, that the accuracy bears beside the error of `best`
-  double w_phase_rad = 0;                   ///< the largest that w makes over the image; neglected unless `best` has a w axis
+  double borne_phase_rad = 0;               ///< the neglected phase of w that the accuracy allows beside the error of `best`
+  double w_phase_rad = 0;                   ///< the largest phase of w over the image; neglected unless `best` has a w axis
   std::vector<RejectedCandidate> rejected;  ///< the cheapest at each other padding, and the widths next to the best
 };
 

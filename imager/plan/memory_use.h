@@ -15,7 +15,7 @@ struct WiderDemand {
   double pixels = 0;
 };
 
-/// What decides how much memory a run of imaging takes.
+/// The numbers that decide how much memory a run of imaging takes.
 struct MemoryDemand {
   TransformMemory transform;
   double pixels = 0;
@@ -29,16 +29,16 @@ struct MemoryDemand {
   int clean_scales = 0;       ///< that minor cycles look at; 0 = no CLEAN
   bool mask = false;          ///< where components may lie
   bool start_model = false;   ///< that CLEAN begins with
-  bool density = false;       ///< from which weights follow
-  std::size_t pointings = 1;  ///< of which each has a density of its own
+  bool density = false;       ///< whether weights follow from a density
+  std::size_t pointings = 1;  ///< each of which has a density of its own
   int beam_images = 0;        ///< primary beams, and images that are divided by them
   std::optional<WiderDemand> wider{};
 };
 
 /// The memory held at one time, in bytes, by what it is for.
 struct MemoryUse {
-  std::string when;         ///< what goes on then: "the PSF is made"
-  double process = 0;       ///< the program, its libraries, and what is too small to count
+  std::string when;         ///< the work at that time: "the PSF is made"
+  double process = 0;       ///< the program, its libraries, and small things
   double visibilities = 0;  ///< kept for later passes
   double blocks = 0;        ///< read ahead, and put in order
   double grids = 0;
@@ -48,8 +48,7 @@ struct MemoryUse {
   double total() const { return process + visibilities + blocks + grids + fft + images; }
 };
 
-/// The memory held at the time at which it is most. A second pass that make_accurate_images finds necessary may take larger
-/// grids.
+/// The memory held when it is most. A second pass that make_accurate_images finds necessary may take larger grids.
 MemoryUse peak_memory(const MemoryDemand& demand, const StreamingOptions& streaming);
 
 }  // namespace misfit::imager

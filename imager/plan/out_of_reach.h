@@ -6,8 +6,9 @@
 
 namespace misfit::imager {
 
-/// Why the accuracy asked cannot be had, in one line, where the best choice is but the most exact one: what limits it (tables,
-/// the precision, or the kernel), an accuracy that will be granted, and what to change. `what` the accuracy is of comes first.
+/// The reason why the accuracy asked cannot be had, in one line, where the choice is only the most exact one: what limits it
+/// (tables, the precision, or the kernel), an accuracy that will be granted, and what to change. The line begins with `what`,
+/// the name of the accuracy.
 std::string out_of_reach(const GriddingRequest& request, const GriddingChoice& choice, const std::string& what = "accuracy");
 
 }  // namespace misfit::imager

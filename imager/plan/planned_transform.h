@@ -23,12 +23,12 @@ class PlannedTransform : public Transform {
   std::unique_ptr<Prediction> predict(Image model) const override;
   std::vector<std::complex<double>> psf_source(const SampleCoordinates& at) const override { return psf().psf_source(at); }
   Normalisation normalisation(const AdjointResult& sums) const override { return images_->normalisation(sums); }
-  /// What makes images, and predicts larger models.
+  /// The transform that makes images, and predicts larger models.
   const Transform& images() const { return *images_; }
   /// Transforms of the same samples for residuals that need not be as exact, and are made in less time: the least exact first.
   /// None unless may_be_coarser(). Planned when they are first asked for.
   const std::vector<CoarserTransform>& coarser() const;
-  /// What makes PSFs: the same, or one of their own.
+  /// The transform that makes PSFs: images(), or one of their own.
   const Transform& psf() const { return psf_ ? *psf_ : *images_; }
 
  private:

@@ -15,9 +15,9 @@ struct StreamingOptions {
   double uv_reach_lambda = 0;  ///< up to where the uv coverage is gathered; 0: nowhere
 };
 
-/// Another source, read ahead of its user, in the same blocks. The first pass that is read to its end tells what was in it, and
-/// may serve all later passes from memory. A pass without a usable sample ends in NothingUsable: where ranks share the samples,
-/// once it is known of all of them, in end_pass().
+/// Another source, read ahead of its user, in the same blocks. The first pass that is read to its end gives the counts, and may
+/// serve all later passes from memory. A pass without a usable sample ends in NothingUsable; where ranks share the samples,
+/// end_pass() throws it, once it is known of all ranks.
 class StreamedVisibilities : public VisibilitySource {
  public:
   /// `from` must outlive this.
@@ -27,10 +27,10 @@ class StreamedVisibilities : public VisibilitySource {
   std::uint64_t samples() const override { return from_.samples(); }
   const Ranks& ranks() const override { return from_.ranks(); }
   void end_pass() const override;
-  /// Gives all passes from now on these weights, in place of those that `from` has: at once where blocks are kept, else as they
-  /// are read. To be called once at most, while nobody reads, and by all ranks.
+  /// Gives all passes from now on these weights, in place of `from`'s: at once where blocks are kept, else as they are read. To
+  /// be called once at most, while nobody reads, and by all ranks.
   void apply(std::shared_ptr<const ImagingWeights> weights, int threads);
-  /// Of a full pass, and zero before there was one.
+  /// The counts of a full pass; zero before there was one.
   SampleCounts counts() const;
   WSpread w_spread() const;
   UvCoverage uv_coverage() const;
@@ -38,7 +38,7 @@ class StreamedVisibilities : public VisibilitySource {
   WeightSums weight_sums() const;
 
  private:
-  /// What a pass told.
+  /// The facts from a pass.
   struct Pass {
     SampleCounts counts;
     WeightTotals weights;  ///< only their spread where none were applied

@@ -18,7 +18,7 @@ class UvCoverage {
   explicit UvCoverage(double reach_lambda = 0);
 
   void add(const VisibilityBlock& block);
-  /// Becomes that of all ranks, which have the same reach.
+  /// Adds the counts of all other ranks, which have the same reach.
   void add_up(const Ranks& ranks);
 
   double reach_lambda() const { return reach_lambda_; }

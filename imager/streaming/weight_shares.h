@@ -8,16 +8,16 @@
 
 namespace misfit::imager {
 
-/// What part of an image samples of one kind at one frequency make.
+/// The part of an image that samples of one kind at one frequency make.
 struct WeightShare {
   std::uint32_t kind = 0;
   double frequency_hz = 0;
   double weight = 0;  ///< Σ of their weights
 };
 
-/// Which samples count, and which are of a kind.
+/// The samples that count, and their kinds.
 struct ShareOptions {
-  double cell_rad = 0;                                      ///< those beyond 1/(2 cell) take no part in the image
+  double cell_rad = 0;                                      ///< samples beyond 1/(2 cell) take no part in the image
   std::function<std::uint32_t(std::uint64_t row)> kind_of;  ///< rows count through all blocks; empty: all are of kind 0
   int threads = 1;
 };

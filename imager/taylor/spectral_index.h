@@ -14,11 +14,11 @@ struct SpectralImages {
   Image alpha;          ///< α = I_1/I_0
   Image alpha_error;    ///< one standard deviation of α by noise
   Image beta;           ///< β = I_2/I_0 − α (α − 1)/2; empty of two terms
-  double level_jy = 0;  ///< of I_0, below which the others are NaN; in a mosaic each pixel has its own
+  double level_jy = 0;  ///< of I_0, below which the other images are NaN; in a mosaic each pixel has its own
 };
 
-/// Of restored images [term] of two terms or more, whose noise is that of `residual`, the principal solutions of what CLEAN
-/// left. With σ_0, σ_1 their robust noise and c its covariance,
+/// The spectral images of restored images [term] of two terms or more. Their noise is the noise of `residual`, the principal
+/// solutions of CLEAN's residuals. With σ_0, σ_1 their robust noise and c its covariance,
 ///
 ///     σ_α² = (σ_1² − 2 α c + α² σ_0²)/I_0²,
 ///
@@ -28,7 +28,7 @@ SpectralImages spectral_images(const std::vector<Image>& restored, const std::ve
                                const std::optional<SolutionNoise>& by = std::nullopt);
 
 /// α and β of `sky`, images [term] of the same sources without the beam, where `apparent` has them and I_0 is positive; without
-/// errors: those of `apparent`, up to noise by which the beam's own α does not change.
+/// errors, which are those of `apparent`, as the beam's own α has no noise.
 SpectralImages spectral_images_of_sky(const std::vector<Image>& sky, const SpectralImages& apparent, int threads);
 
 }  // namespace misfit::imager

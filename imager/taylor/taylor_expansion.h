@@ -4,7 +4,7 @@
 
 namespace misfit::imager {
 
-/// Terms of a spectrum at most.
+/// The most terms of a spectrum.
 constexpr int most_taylor_terms = 3;
 
 /// A number for each term; 0 beyond those in use.

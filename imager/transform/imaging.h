@@ -18,7 +18,7 @@ struct NothingInGrid : std::runtime_error {
 };
 
 /// Where several ranks share the samples, images are at rank 0, and empty at others, here and wherever images are made; all
-/// that else is told is that of all samples, and of the images, at every rank.
+/// other fields are about all samples and the images, at every rank.
 struct DirtyImages {
   std::vector<Image> dirty;                       ///< [Stokes], Jy/beam: the adjoint, normalised
   Image psf;                                      ///< 1 at the centre up to the accuracy; empty unless asked for
@@ -29,28 +29,28 @@ struct DirtyImages {
 };
 
 /// One pass over the visibilities. Stages timed: "read", "grid", "fft", which counts corrections in. Throws std::runtime_error
-/// when no sample can be used, NothingInGrid where that is why.
+/// when no sample can be used; NothingInGrid where all lie beyond the grid.
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const AdjointOptions& options,
                               const Context& context);
 
 /// A PSF made by a transform of its own.
 struct OwnPsf {
   const Transform& transform;
-  int images = 1;  ///< made by the other transform, see AdjointOptions
+  int images = 1;  ///< images made by the other transform, see AdjointOptions
 };
 
-/// The same with the PSF by a transform of its own, in the same pass.
+/// Makes dirty images, and the PSF by a transform of its own, in the same pass.
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const OwnPsf& psf,
                               const Context& context);
 
-/// Given a block and its data − model [row][channel], which is that at usable samples alone.
+/// Gets a block and its data − model [row][channel], which is defined at usable samples alone.
 using VisitResidual = std::function<void(const VisibilityBlock& block, const std::vector<std::complex<double>>& residual)>;
 
-/// One pass over the visibilities less those of a model, which every rank has. Stages timed: "read", "fft", "degrid".
+/// Makes one pass over data − model; every rank has the model. Stages timed: "read", "fft", "degrid".
 void for_each_residual(const OneStokes& samples, const Transform& transform, Image model, const Context& context,
                        const VisitResidual& visit);
 
-/// The same of a model whose prediction is made once the pass has begun.
+/// Makes the pass with a model whose prediction is made once the pass has begun.
 using MakePrediction = std::function<std::unique_ptr<Prediction>()>;
 void for_each_residual(const OneStokes& samples, const MakePrediction& predict, const Context& context,
                        const VisitResidual& visit);
@@ -59,7 +59,7 @@ void for_each_residual(const OneStokes& samples, const MakePrediction& predict, 
 struct ImagedData {
   OneStokes samples;
   const Transform& transform;
-  Normalisation normalisation;  ///< that of their dirty images
+  Normalisation normalisation;  ///< of their dirty images
 };
 
 /// The dirty image of data − model: the model is predicted at every usable sample and

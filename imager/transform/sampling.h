@@ -15,7 +15,7 @@ inline bool inside_grid(double u_turns, double v_turns) {
   return std::abs(u_turns) <= 0.5 && std::abs(v_turns) <= 0.5;
 }
 
-/// The largest integer that does not exceed x, of less than 2^31: std::floor is a call where the instruction may be missing.
+/// The largest integer that does not exceed x, for |x| below 2^31: std::floor is a call where the instruction may be missing.
 inline int floor_to_int(double x) {
   const int towards_zero = static_cast<int>(x);
   return towards_zero - (x < towards_zero ? 1 : 0);
@@ -37,8 +37,8 @@ struct ImagedSamples {
   int threads = 1;
 };
 
-/// The block's weights [row][channel], 0 for samples that take no part in imaging. Counts samples inside and outside the grid,
-/// those that take part as used.
+/// The block's weights [row][channel], 0 for samples that take no part in imaging. Counts samples that take part as used, and
+/// samples outside the grid.
 std::vector<float> imaging_weights(const VisibilityBlock& block, const ImagedSamples& imaged, SampleSums& sums);
 
 }  // namespace misfit::imager

@@ -7,7 +7,7 @@
 
 namespace misfit::imager {
 
-/// Adds to the sums, as add_to_sums does, those of `count` consecutive samples whose weight is not 0, without counting them.
+/// Adds `count` consecutive samples whose weight is not 0 to the sums, as add_to_sums does, without counting them.
 void add_span_to_sums(const float* weight, const std::complex<float>* visibility, std::size_t count, SampleSums& sums);
 void add_span_to_sums(const float* weight, const std::complex<double>* visibility, std::size_t count, SampleSums& sums);
 

@@ -26,20 +26,20 @@ struct SampleSums {
   /// Root mean square of the visibilities, in Jy; 0 where there are none.
   double data_jy() const { return weight > 0 ? std::sqrt(weight_square / weight) : 0; }
   SampleSums& operator+=(const SampleSums& other);
-  /// Becomes that of all ranks.
+  /// Adds the sums of all other ranks.
   void add_up(const Ranks& ranks);
 };
 
-/// What an adjoint makes of the samples.
+/// The images that an adjoint makes of the samples.
 struct AdjointOptions {
   int images = 1;  ///< of a block's own Stokes parameter, or of all that it carries, up to most_stokes; 0: the PSF alone
   bool with_psf = false;
   /// Whether samples beyond 1/(2 cell) count too, as they do in the definition: pixels are points, whose values are periodic in
   /// u and v but for the phase of the middle one. What they add is no picture of the sky.
   bool beyond_grid = false;
-  /// Whether a transform that does not see all pixels alike tells how well it sees each, see AdjointResult.
+  /// Whether a transform that does not see all pixels alike gives its sensitivity in each, see AdjointResult.
   bool with_sensitivity = false;
-  /// Up to which power k it tells that of Σ w x^k besides, with x = ν/ν_0 − 1.
+  /// The highest power k for which it also gives the sensitivity with w x^k, with x = ν/ν_0 − 1.
   int sensitivity_powers = 0;
   double sensitivity_reference_hz = 0;  ///< ν_0
 };
@@ -48,13 +48,14 @@ struct AdjointOptions {
 struct AdjointResult {
   /// [Stokes]: Σ w Re[V exp(−2πi(ul+vm+w(n−1)))]; NaN beyond the horizon.
   std::vector<Image> images;
-  /// The same with V = exp(+2πi(u l_0 + v m_0 + w(n_0−1))), the response to a source of 1 Jy in the image's middle pixel, where
-  /// it is Σ w; empty unless it was asked for. It is NaN where w counts and that pixel lies beyond the horizon.
+  /// The image with V = exp(+2πi(u l_0 + v m_0 + w(n_0−1))), the response to a source of 1 Jy in the image's middle pixel,
+  /// where it is Σ w; empty unless it was asked for. It is NaN where w counts and that pixel lies beyond the horizon.
   Image psf;
-  std::vector<SampleSums> sums;  ///< [Stokes], of the block's own for a PSF alone: they differ in those of |V| alone
-  /// What a source of 1 Jy in each pixel adds to the sum of that pixel; empty where that is Σ w in all, or was not asked for.
+  std::vector<SampleSums> sums;  ///< [Stokes]; they differ in |V| alone. For a PSF alone: of the blocks' own visibilities
+  /// The contribution of a source of 1 Jy in each pixel to the sum of that pixel; empty where it is Σ w in all pixels, or was
+  /// not asked for.
   Image sensitivity;
-  std::vector<Image> further_sensitivity;  ///< [k − 1]: the same with w x^k
+  std::vector<Image> further_sensitivity;  ///< [k − 1]: the sensitivity with w x^k
   double fft_s = 0;  ///< seconds of wall clock that FFTs and corrections took, as samples were added and at the end
 };
 
@@ -73,8 +74,7 @@ class AdjointSum {
  protected:
   /// Throws std::invalid_argument when nothing is to be made, or there are to be too many images.
   explicit AdjointSum(const AdjointOptions& options);
-  /// Adds a block's samples with a set of visibilities for each image; for a PSF alone with the block's own, of which sums are
-  /// taken.
+  /// Adds a block's samples with a set of visibilities for each image; for a PSF alone with the block's own, for the sums.
   virtual void add_sets(const VisibilityBlock& block, const VisibilitySets& sets) = 0;
   std::size_t images() const { return static_cast<std::size_t>(options_.images); }
   std::size_t sets() const { return images() == 0 ? 1 : images(); }
@@ -93,9 +93,9 @@ class Prediction {
   virtual std::vector<std::complex<double>> at_usable(const VisibilityBlock& block) const = 0;
   /// at_usable of each block. [block][row][channel]
   virtual std::vector<std::vector<std::complex<double>>> at_usable_of(const std::vector<const VisibilityBlock*>& blocks) const;
-  /// Samples that are best asked for together, where every call takes FFTs; 0 = any number.
+  /// The best number of samples to ask for together, where every call takes FFTs; 0 = any number.
   virtual std::size_t samples_at_once() const { return 0; }
-  /// Seconds of wall clock that FFTs and corrections have taken, from its making on.
+  /// Seconds of wall clock that FFTs and corrections have taken since this was made.
   virtual double fft_s() const { return 0; }
 };
 
@@ -108,7 +108,7 @@ class Transform {
   virtual ~Transform() = default;
   virtual std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const = 0;
   virtual std::unique_ptr<Prediction> predict(Image model) const = 0;
-  /// What the source gives whose response an adjoint makes the PSF of. [row][channel]
+  /// The visibilities of the source whose response is the PSF of an adjoint. [row][channel]
   virtual std::vector<std::complex<double>> psf_source(const SampleCoordinates& at) const = 0;
   /// How adjoints of this transform become images, given the sums of all samples.
   virtual Normalisation normalisation(const AdjointResult& sums) const { return Normalisation(sums.sums.front().weight); }

@@ -62,13 +62,13 @@ inline std::unique_ptr<AdjointSum> begin_adjoint(const Transform& transform, con
   return transform.adjoint(options);
 }
 
-/// Becomes that of all ranks at rank 0, and empty at others.
+/// Makes the image at rank 0 the sum over all ranks, and empty at others.
 inline void add_up(Image& image, const Ranks& ranks) {
   ranks.sum_at_first(image.pixel.data(), image.pixel.size());
   if (!ranks.first()) image = {};
 }
 
-/// Of the samples of all ranks; images at rank 0 alone. Also frees the grid.
+/// The result for the samples of all ranks, with images at rank 0 alone. Also frees the grid.
 inline AdjointResult finish_adjoint(std::unique_ptr<AdjointSum> sum, const Ranks& ranks, const Context& context) {
   AdjointResult result;
   {

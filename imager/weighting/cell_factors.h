@@ -4,8 +4,8 @@
 
 namespace misfit::imager {
 
-/// What the cells of a density multiply the weights of their samples by; 0 in cells without samples. Densities and factors are
-/// held alike, `Cells` being DenseCells or CellTiles: both give the same bits.
+/// The factors of samples' weights by cells of a density; 0 in cells without samples. Densities and factors are both held in
+/// `Cells`, DenseCells or CellTiles, which give the same bits.
 
 /// 1/W_k, or 1/(Σ W over the cells within `reach` columns and rows of k): uniform, and superuniform weights. The whole plane
 /// counts, across v = 0 too.
@@ -26,7 +26,7 @@ Cells<float> briggs_abs_factors(const Cells<double>& weight, double robust, doub
 template <template <typename> class Cells>
 Cells<float> briggs_factors(const Cells<double>& weight, double f2);
 
-/// How far factors may rise above those about them. WSClean's rank filter, which keeps sparse cells from outweighing others.
+/// Limits how far factors rise above those about them: WSClean's rank filter, which keeps sparse cells from outweighing others.
 struct RankFilter {
   double level = 3;  ///< above 0
   int reach = 8;     ///< columns and rows on either side

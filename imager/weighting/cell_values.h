@@ -10,7 +10,7 @@
 
 namespace misfit::imager {
 
-/// A value of each cell, row-major [v][u]. CellTiles has the same functions for planes of which samples touch little.
+/// A value of each cell, row-major [v][u]. CellTiles has the same functions, for planes that samples touch in few places.
 template <typename Value>
 class DenseCells {
  public:
@@ -65,7 +65,7 @@ class CellTiles {
     return tile ? (*tile)[place % UvCells::tile_cells] : Value{};
   }
   Value& touch(std::uint32_t place) { return touch_tile(place / UvCells::tile_cells)[place % UvCells::tile_cells]; }
-  /// Null where it was not touched.
+  /// A tile; null where it was not touched.
   const Tile* tile(std::size_t number) const { return tile_[number].get(); }
   Tile& touch_tile(std::size_t number) {
     if (!tile_[number]) tile_[number] = std::make_unique<Tile>();
@@ -105,7 +105,7 @@ class CellTiles {
 
  private:
   std::size_t tiles_across() const { return cells_.tiles_across(); }
-  /// The part of a row that lies in the row's t-th tile; null where that was not touched.
+  /// The part of a row that lies in the row's t-th tile; null where that tile was not touched.
   const Value* in_tile(int row, std::size_t t) const {
     const auto v = static_cast<std::size_t>(row);
     const auto& tile = tile_[v / UvCells::tile_side * tiles_across() + t];

@@ -16,7 +16,7 @@ namespace misfit::imager {
 
 enum class Weighting { natural, uniform, superuniform, briggs, briggs_abs, briggs_bandwidth_taper };
 
-/// How the weights of an image follow from those of the data, w. With W_k, the density of the sample's cell (see UvDensity):
+/// How the weights of an image follow from the data's weights w. With W_k, the density of the sample's cell (see UvDensity):
 ///   natural       w
 ///   uniform       w / W_k
 ///   superuniform  w / Σ W, over the cells within `box_reach` of it
@@ -25,9 +25,9 @@ enum class Weighting { natural, uniform, superuniform, briggs, briggs_abs, brigg
 ///   briggs_bandwidth_taper   w / (1 + W_k f²/m), with r = Δν/ν_c √(u² + v²) in cells, m = r + ½ where r ≥ 1, and below
 ///                 m = (4 − r)/(4 − 2r): weights of a cube's plane as those of its whole band would be
 /// each times the factors of the taper and the window. The density counts every sample as if there were no taper and no window,
-/// as CASA's and WSClean's does. Each of several pointings has its own density and f², as CASA's `mosweight` has it. A rank
-/// filter cuts what a cell multiplies w by before they act. The documentation of CASA's tclean has these equations, but for
-/// natural and uniform.
+/// as CASA's and WSClean's does. Each of several pointings has its own density and f², as with CASA's `mosweight`. A rank
+/// filter cuts the factors of cells before taper and window act. The documentation of CASA's tclean has these equations, but
+/// for natural and uniform.
 struct WeightingOptions {
   Weighting weighting = Weighting::natural;
   double robust = 0.5;                      ///< R of briggs: −2, nearly uniform, to 2, nearly natural
@@ -37,7 +37,8 @@ struct WeightingOptions {
   std::optional<RankFilter> rank_filter{};  ///< not of natural, nor of briggs_bandwidth_taper, whose factors vary in a cell
   std::optional<UvTaper> taper{};
   UvWindow window{};
-  /// Each has a density of its own, and the sights of a block tell its rows' pointings; 1: all samples share one density.
+  /// If more than 1, each pointing has a density of its own, and the sights of a block tell its rows' pointings; 1: all samples
+  /// share one density.
   std::size_t pointings = 1;
 
   bool needs_density() const { return weighting != Weighting::natural; }
@@ -47,32 +48,32 @@ struct WeightingOptions {
   bool tapers() const { return taper || !window.is_whole_plane(); }
 };
 
-/// Sums over samples within 1/(2 cell): w those of the data, w' those of the image.
+/// Sums over samples within 1/(2 cell): w are the data's weights, w' the image's.
 struct WeightSums {
   double natural = 0;              ///< Σ w
   double image = 0;                ///< Σ w'
   double square_over_natural = 0;  ///< Σ w'²/w
 
-  /// Of data that are imaged with their own weights.
+  /// The sums of data that are imaged with their own weights.
   static WeightSums of_natural(double weight) { return {weight, weight, weight}; }
   WeightSums& operator+=(const WeightSums& other);
 
-  /// Whether the weights that `samples` have at least, see ImagingWeights::of(), count for a millionth of the image at most.
+  /// Whether the least weights that `samples` have, see ImagingWeights::of(), add up to a millionth of the image at most.
   bool outweigh_least(std::uint64_t samples) const;
   /// The standard deviation of an image's noise in Jy/beam, where w is 1/(4 σ²) of the data's noise in Jy (see
-  /// VisibilityBlock::weight): √(Σ w'²/(4w)) / Σ w'. It is as right as the weights that the data came with.
+  /// VisibilityBlock::weight): √(Σ w'²/(4w)) / Σ w'. It is as right as the data's weights.
   double noise_jy() const;
   /// The least that any weights give: 1/(2 √Σ w).
   double natural_noise_jy() const;
 };
 
-/// What the weights of an image sum up to.
+/// Sums over the weights of an image.
 struct WeightTotals {
   WeightSums sums;
   WSpread w_spread;
 
   WeightTotals& operator+=(const WeightTotals& other);
-  /// Becomes that of all ranks.
+  /// Adds the totals of all other ranks.
   void add_up(const Ranks& ranks);
 };
 
@@ -91,17 +92,17 @@ struct F2Range {
 /// The weights of an image.
 class ImagingWeights {
  public:
-  /// Natural ones, by the taper and the window of `options`.
+  /// Natural weights, with the taper and the window of `options`.
   ImagingWeights(const ImageGeometry& geometry, const WeightingOptions& options);
-  /// By density; `options.weighting` is not natural.
+  /// Weights by density; `options.weighting` is not natural.
   ImagingWeights(const UvDensity& density, const WeightingOptions& options);
 
   /// `block`, with its other Stokes parameters and the weights of the image: the same block where nobody else holds it, else a
-  /// copy. What is usable stays so: samples beyond 1/(2 cell) or outside the window, and what a taper leaves nothing of, keep
-  /// the smallest weight that there is. Throws std::invalid_argument where there are several pointings, and the block's sights
-  /// do not tell those of its rows.
+  /// copy. Usable samples stay usable: those beyond 1/(2 cell), outside the window or tapered to nothing keep the smallest
+  /// weight that there is. Throws std::invalid_argument where there are several pointings, and the block's sights do not tell
+  /// those of its rows.
   WeightedBlock of(std::shared_ptr<const VisibilityBlock> block) const;
-  /// Does so with all blocks.
+  /// Puts the weights on all blocks.
   WeightTotals put_on(StoredVisibilities& visibilities, int threads) const;
 
   const F2Range& f2() const { return f2_; }  ///< of Briggs weights that have it, else 0
@@ -126,7 +127,7 @@ class ImagingWeights {
 };
 
 /// The weights that `options` ask for, after a pass over `source` where they follow from its density; null where they are the
-/// data's. Stages timed: "read", "weights".
+/// data's own. Stages timed: "read", "weights".
 std::shared_ptr<const ImagingWeights> make_imaging_weights(const VisibilitySource& source, const WeightingOptions& options,
                                                            const ImageGeometry& geometry, const Context& context);
 

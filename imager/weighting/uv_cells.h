@@ -11,11 +11,11 @@ namespace misfit::imager {
 
 /// The cells in which the density of samples is counted: those of the image's own uv grid, 1/(N cell) wavelengths wide, where N
 /// is the image's width or height. A sample lies in column floor(u N cell) and row floor(v N cell), and its conjugate (−u, −v)
-/// counts as another sample. So the plane is symmetric, and the half that v > 0 (or v = 0 and u ≥ 0) tells all of it: a sample
+/// counts as another sample. So the plane is symmetric, and the half with v > 0 (or v = 0 and u ≥ 0) tells all of it: a sample
 /// of the other half counts where its conjugate lies.
 class UvCells {
  public:
-  /// The cell of what lies beyond 1/(2 cell), or is not finite.
+  /// The cell of samples beyond 1/(2 cell), or not finite.
   static constexpr std::uint32_t outside = std::numeric_limits<std::uint32_t>::max();
 
   explicit UvCells(const ImageGeometry& geometry);
@@ -29,9 +29,9 @@ class UvCells {
   double width_lambda() const { return 1 / (width_ * cell_rad_); }
   double height_lambda() const { return 1 / (height_ * cell_rad_); }
 
-  /// What a metre is at each frequency, in turns per pixel. [channel]
+  /// A metre at each frequency, in turns per pixel. [channel]
   std::vector<double> turns_per_m(const std::vector<double>& frequency_hz) const;
-  /// How far from u = v = 0 a sample lies where a metre is this many turns per pixel, in cells.
+  /// The distance of a sample from u = v = 0, in cells, where a metre is this many turns per pixel.
   double distance(const double* uvw_m, double turns_per_m) const {
     return turns_per_m * std::hypot(width_ * uvw_m[0], height_ * uvw_m[1]);
   }
@@ -39,7 +39,7 @@ class UvCells {
   /// The cell, row-major [v][u], of a row's samples at each channel.
   void of_row(const double* uvw_m, const std::vector<double>& turns_per_m, std::uint32_t* cell) const;
 
-  /// Tiles are squares of cells: near ones have places that lie together. Those at the end of a row or column of tiles may
+  /// Tiles are squares of cells: near cells have places that lie together. Those at the end of a row or column of tiles may
   /// reach beyond the cells.
   static constexpr std::uint32_t tile_side = 8;
   static constexpr std::uint32_t tile_cells = tile_side * tile_side;
@@ -47,7 +47,7 @@ class UvCells {
   std::size_t tiles() const {
     return std::size_t{tiles_across()} * ((static_cast<std::uint32_t>(rows()) + tile_side - 1) / tile_side);
   }
-  /// The place of a cell where cells are counted tile by tile, within them and among them row-major [v][u].
+  /// The place of a cell where cells are counted tile by tile; cells in a tile, and tiles, are row-major [v][u].
   std::uint32_t place(int row, int column) const {
     return place(static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(column), tiles_across());
   }

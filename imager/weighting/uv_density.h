@@ -8,23 +8,23 @@
 
 namespace misfit::imager {
 
-/// Throws std::invalid_argument where there are several pointings, and the sights of the coordinates do not tell each row's.
+/// Throws std::invalid_argument where there are several pointings, and the coordinates' sights do not tell each row's pointing.
 void require_pointings(const SampleCoordinates& coordinates, std::size_t pointings);
 
-/// How much weight lies in each cell of the uv plane: W_k = Σ w of the samples in cell k and of the conjugates of others that
+/// How much weight lies in each cell of the uv plane: W_k = Σ w of the samples in cell k and of other samples whose conjugates
 /// lie there. Samples beyond 1/(2 cell), which imaging leaves out, do not count. Each cell is summed in double precision in the
 /// order of its samples: the same bits for any number of threads, and for blocks of any number of rows.
 ///
-/// Each of several pointings has a density of its own, of which only what samples touch is held: it has the same bits as the
-/// density of its samples alone.
+/// Each of several pointings has a density of its own, of which only tiles that samples touch are held: it has the same bits as
+/// the density of its samples alone.
 class UvDensity {
  public:
   UvDensity(const ImageGeometry& geometry, int threads, std::size_t pointings = 1);
 
-  /// Where there are several pointings, the block's sights tell those of its rows. Throws std::invalid_argument where they do
-  /// not.
+  /// Where there are several pointings, the block's sights must tell its rows' pointings: throws std::invalid_argument where
+  /// they do not.
   void add(const VisibilityBlock& block);
-  /// Becomes that of all ranks.
+  /// Adds the densities of all other ranks.
   void add_up(const Ranks& ranks);
 
   const UvCells& cells() const { return cells_; }
@@ -61,7 +61,7 @@ class UvDensity {
   int band_shift_ = 0;  ///< a band holds 2 to this power of cells
   std::size_t bands_ = 0;
   std::optional<DenseCells<double>> weight_;           ///< shared by all samples
-  std::vector<CellTiles<double>> weight_of_pointing_;  ///< else
+  std::vector<CellTiles<double>> weight_of_pointing_;  ///< where pointings have their own
   std::vector<Piece> pieces_;
 };
 

@@ -9,8 +9,8 @@ namespace misfit::imager {
 ///   0                                    where r < min or r > max
 ///   T(r − min, inner) T(max − r, outer)  elsewhere, where T(x, d) = ½ (1 − cos(π x/d)) if x < d, else 1
 /// T is the edge of a Tukey window: Harris 1978, On the use of windows for harmonic analysis with the discrete Fourier
-/// transform (Proc. IEEE 66, 51). WSClean takes these factors at the cells of its grid of weights, and this at the sample
-/// itself.
+/// transform (Proc. IEEE 66, 51). WSClean takes these factors at the cells of its grid of weights; here they are taken at the
+/// sample itself.
 struct UvWindow {
   double min_lambda = 0;
   double max_lambda = std::numeric_limits<double>::infinity();

@@ -34,7 +34,7 @@ class ColumnGroup {
   /// image += h · Re(sum · exp(+2πi q w_first)).
   void store(const Facet& facet, int first_plane, Image& image);
 
-  /// One plane of column c, in the order of an FFT of length n: Horner's rule, and its transpose.
+  /// Adds one plane of column c, in the order of an FFT of length n: Horner's rule; and its transpose.
   template <typename Real>
   void turn_and_add(int c, const std::complex<Real>* column, int n) {
     in_fft_order(c, n, [&](std::size_t i, int place, int count) {

@@ -25,7 +25,7 @@ struct ColumnPhasors {
 void turn_and_add(const ColumnPhasors& sum, const ColumnPhasors& half_step, const std::complex<float>* value, int count);
 void turn_and_add(const ColumnPhasors& sum, const ColumnPhasors& half_step, const std::complex<double>* value, int count);
 
-/// Its transpose: value[i] = sum[i], then sum[i] = sum[i] · conj(half_step[i]²).
+/// The transpose of turn_and_add(): value[i] = sum[i], then sum[i] = sum[i] · conj(half_step[i]²).
 void store_and_turn(const ColumnPhasors& sum, const ColumnPhasors& half_step, std::complex<float>* value, int count);
 void store_and_turn(const ColumnPhasors& sum, const ColumnPhasors& half_step, std::complex<double>* value, int count);
 

@@ -30,7 +30,7 @@ struct Facet {
 /// Splits an image into `along_l` × `along_m` facets whose sizes differ by a pixel at most.
 std::vector<Facet> split_into_facets(const ImageGeometry& image, int along_l, int along_m);
 
-/// Pixels along an axis of the largest of so many facets.
+/// The pixels along an axis of the largest of `facets` facets.
 inline int largest_facet(int pixels, int facets) {
   return (pixels + facets - 1) / facets;
 }

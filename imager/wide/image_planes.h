@@ -8,17 +8,17 @@
 
 namespace misfit::imager {
 
-inline constexpr int columns_at_once = 16;  ///< that are transformed along v together: a cache line or two of each row
+inline constexpr int columns_at_once = 16;  ///< columns that are transformed along v together: a cache line or two of each row
 
-/// Rows 0 … nv/2 of half planes between their FFTs along u and along v, of the columns that the image keeps. What one group of
-/// columns takes lies together: [group][plane][grid][q][column in group]. Memory is used again from one facet to the next.
+/// Rows 0 … nv/2 of half planes between their FFTs along u and along v, of the columns that the image keeps. The memory of one
+/// group of columns lies together: [group][plane][grid][q][column in group]. Memory is used again from one facet to the next.
 template <typename Real>
 class ImagePlanes {
  public:
   ImagePlanes(int fft_length_v, int grid_count)
       : nv(fft_length_v), grids(grid_count), holds(static_cast<std::size_t>(fft_length_v / 2 + 1)) {}
 
-  /// Makes room for that many columns of planes no row of which holds anything.
+  /// Makes room for that many columns and planes; no row holds anything.
   void reserve(int column_count, int plane_count) {
     width = column_count;
     planes = plane_count;

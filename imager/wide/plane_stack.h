@@ -28,8 +28,8 @@ struct StackShape {
   int chunks() const { return tiles_u() + 1; }
   int columns() const { return chunks() * tile; }
   int rows() const { return (tiles_v() + 1) * tile; }
-  /// Rows of storage held for a band of so many tiles: those that its taps reach, and what rows of the grid take that wait for
-  /// their mirror images.
+  /// Rows of storage held for a band of so many tiles: the rows that its taps reach, and the rows that wait for their mirror
+  /// images.
   int held_rows(int tiles) const { return tiles * tile + 3 * width + 4; }
 };
 
@@ -40,10 +40,10 @@ struct TilePlace {
 };
 
 /// A band of rows of half planes of constant w, each with one or more complex grids, plane i at the opposite w of plane
-/// planes − 1 − i: its other half, v < 0, is the conjugate of that one's mirror image, G_i(−p, −q) = conj G_{planes−1−i}(p, q).
-/// Cells of one row and one tile lie together: [row][chunk][plane][grid][column in chunk], a chunk being as wide as a tile.
-/// Bands follow each other from the first row to the last in one piece of memory: as many rows of tiles as caches hold, one at
-/// least.
+/// planes − 1 − i: the other half of a plane, v < 0, is the conjugate of the opposite plane's mirror image, G_i(−p, −q) = conj
+/// G_{planes−1−i}(p, q). Cells of one row and one tile lie together: [row][chunk][plane][grid][column in chunk], a chunk being
+/// as wide as a tile. Bands follow each other from the first row to the last in one piece of memory: as many rows of tiles as
+/// caches hold, one at least.
 template <typename Real>
 class PlaneStack {
  public:
@@ -53,7 +53,7 @@ class PlaneStack {
   void reserve(int plane_count, int band_tiles);
   /// Lets go of the rows before `first`, which is no less than any given before.
   void advance(int first, int threads);
-  /// Makes zero what taps of the tiles can reach and was not used before.
+  /// Sets cells to zero that taps of the tiles can reach and that were not used before.
   void use_tiles(const std::vector<TilePlace>& tiles, int threads);
   /// Marks a row as used; its content is undefined until somebody writes it.
   void use_row(int row);

@@ -14,7 +14,8 @@ template <typename Real>
 void planes_to_images(const ImagePlanes<Real>& planes, const StackedFacet& facet, int first_plane, int threads,
                       const std::vector<Image*>& images);
 
-/// The adjoint, for planes of one grid whose rows are still to be transformed. Pixels beyond the horizon are not used.
+/// The adjoint of planes_to_images(), for planes of one grid whose rows are still to be transformed. Pixels beyond the horizon
+/// are not used.
 template <typename Real>
 void image_to_planes(const Image& image, const StackedFacet& facet, int first_plane, int threads, ImagePlanes<Real>& planes);
 

@@ -10,11 +10,11 @@
 
 namespace misfit::imager {
 
-/// Grids of a plane: those of images, and last (while gridding one) that of the PSF.
+/// Grids of a plane: of images, and last, while gridding one, of the PSF.
 inline constexpr int most_grids = most_stokes + 1;
 
-/// Samples on their way to or from one tile of a stack of planes. The plane is that of the first tap in the tile's buffer; it
-/// may lie below or above the planes there, of which only the taps within count.
+/// Samples on their way to or from one tile of a stack of planes. `plane` is the place of the first tap in the tile's buffer;
+/// it may lie below or above the planes there: taps outside do not count.
 template <typename Real>
 struct StackBatch : TilePlaces<Real> {
   int plane[TilePlaces<Real>::capacity];
@@ -22,7 +22,7 @@ struct StackBatch : TilePlaces<Real> {
   std::complex<Real> value[most_grids][TilePlaces<Real>::capacity];  ///< [grid]
 };
 
-/// Where the cells of a tile lie. Distances are in cells.
+/// The cells of a tile in memory. Distances are in cells.
 template <typename Complex>
 struct StackCells {
   Complex* first = nullptr;  ///< plane 0, row 0, grid 0, column 0
@@ -38,7 +38,7 @@ struct StackCells {
 };
 
 /// A tile's private piece of a stack of one or more grids a plane, with room for the taps that leave the tile:
-/// [plane][row][grid][column]. All of it is zero, but for what a user has put there and not moved on.
+/// [plane][row][grid][column]. All of it is zero, except values that a user has put there and not yet moved on.
 template <typename Real>
 struct StackBuffer {
   int planes = 0;
@@ -62,7 +62,7 @@ struct StackBuffer {
   const std::complex<Real>* row(int plane, int r, int grid) const { return cell.data() + offset(plane, r, grid); }
 
  private:
-  /// What the taps of a row fill at most: whole vectors of 64 bytes.
+  /// The most columns that the taps of a row fill: whole vectors of 64 bytes.
   static int most_columns(int width) {
     constexpr int vector = 64 / sizeof(std::complex<Real>);
     return (width + vector - 1) / vector * vector;

@@ -34,13 +34,13 @@ struct StackOrderOptions {
   int threads = 1;
 };
 
-/// Samples of which those of weight 0 are not wanted; without weights [row][channel] all are.
+/// Samples, of which those of weight 0 [row][channel] are not wanted; without weights all are wanted.
 struct WantedSamples {
   const SampleCoordinates* at;
   const float* weight = nullptr;
 };
 
-/// Orders wanted samples, or where these have v < 0 their mirror images, by the tile and the plane of their first tap.
+/// Orders wanted samples, or their mirror images where v < 0, by the tile and the plane of their first tap.
 StackOrder order_for_stack(const std::vector<WantedSamples>& blocks, const StackOrderOptions& options);
 
 }  // namespace misfit::imager

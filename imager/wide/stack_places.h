@@ -26,23 +26,23 @@ struct StackRow {
   double w_per_hz = 0;      ///< steps of planes
   double turns_per_hz = 0;  ///< u l_0 + v m_0 + w middle: the phase of the facet's middle pixel
 
-  /// Of the mirror image (u, v, w) are negated, and the visibility is the conjugate.
+  /// For the mirror image (u, v, w) are negated, and the visibility is the conjugate.
   StackRow(const double* uvw_m, bool mirrored, const StackScale& scale);
 };
 
-/// Where samples of a row, or their mirror images, have their first taps.
+/// The first taps of samples of a row, or of their mirror images.
 struct FirstTaps {
   std::int32_t* tile;      ///< row of tiles × tiles in a row + column
   std::int32_t* plane;     ///< k
   std::int32_t* mirrored;  ///< 1 where the sample falls into the half of the grid with v < 0, so that its mirror image is taken
-  double* period;          ///< which of the grid's periods along u and v; equal where both are
+  double* period;          ///< a number for the grid's periods along u and v; equal where both are equal
 };
 
 /// Writes the first taps at `count` frequencies of a row that is not mirrored, for kernels of `width_w` planes along w.
 void first_taps(const StackRow& row, const StackShape& shape, int width_w, const double* frequency_hz, int count,
                 const FirstTaps& out);
 
-/// How the tile sees samples of a row that it holds, with the one at `frequency_hz`: those of one period.
+/// The row as the tile sees it, for samples of the same period as the one at `frequency_hz`.
 RowInTile row_in_tile(const StackRow& row, const StackShape& shape, int tile_u, int tile_v, double frequency_hz);
 
 }  // namespace misfit::imager

@@ -14,14 +14,14 @@ namespace misfit::imager {
 template <typename Real>
 class StackRows {
  public:
-  /// Both must outlive it, and have as many planes and grids.
+  /// Stack and image must outlive it, and have the same numbers of planes and grids.
   StackRows(PlaneStack<Real>& stack, ImagePlanes<Real>& image, int threads);
   ~StackRows();
 
   /// Σ_p G(p, q) exp(+2πi px/nu) for the used rows q that have not been transformed yet and to which rows of storage from
   /// `filled` on add nothing.
   void to_image(int filled);
-  /// The first row of storage that rows not transformed yet take.
+  /// The first row of storage that belongs to rows not transformed yet.
   int first_awaited() const;
   /// The adjoint, for a stack of one grid a plane: G(p, q) for the rows q not transformed yet that rows of storage up to
   /// `needed` show, margins filled by periodicity.

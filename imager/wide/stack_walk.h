@@ -40,7 +40,7 @@ struct StackTask {
   StackPlanes planes;
 };
 
-/// The pairs of planes that hold anything, at most so many at a time.
+/// The pairs of planes that hold anything, in slabs of at most `most_pairs`.
 std::vector<Slab> slabs_of(const StackOrder& order, int most_pairs);
 
 /// Neighbouring rows of tiles, [begin, end).
@@ -66,7 +66,7 @@ struct BatchRun {
   bool mirrored;
 };
 
-/// What a batch needs to know of its samples besides their places.
+/// The data of a batch's samples besides their places.
 struct BatchPhases {
   static constexpr int capacity = TilePlaces<double>::capacity;
   int most;  ///< samples of the batches to come
@@ -76,7 +76,7 @@ struct BatchPhases {
   double sine[capacity];
 };
 
-/// A facet's samples and where they go.
+/// A facet's samples and their order.
 struct StackSamples {
   const std::vector<WantedSamples>& blocks;
   const StackOrder& order;

@@ -12,7 +12,8 @@ namespace misfit::imager {
 
 /// Sums in single precision stay short: a buffer is added to the stack after so many samples.
 inline constexpr int most_in_buffer = 1024;
-/// Equal terms err to one side, by up to 2⁻²⁵ of the sum each: fewer of them in single precision where a cell takes them all.
+/// Equal terms err to one side, each by up to 2⁻²⁵ of the sum: no more are summed in single precision where one cell takes them
+/// all.
 inline constexpr int most_in_single_cell = 32;
 
 /// Adds up the samples of a tile: in a buffer that goes to the stack now and then, in place in the stack where they are few,
@@ -20,7 +21,7 @@ inline constexpr int most_in_single_cell = 32;
 template <typename Real>
 class TileSum {
  public:
-  /// All that is given must outlive it. The buffer must be zero, and is so again after finish().
+  /// The arguments must outlive it. The buffer must be zero, and is zero again after finish().
   TileSum(const WideSetup<Real>& setup, const StackTask& task, const Slab& slab, bool in_place, StackBuffer<Real>& buffer,
           PlaneStack<Real>& stack)
       : setup_(setup),
@@ -43,7 +44,7 @@ class TileSum {
   /// Samples that the next batch may bring.
   int most_in_batch() const { return exact_ ? most_in_single_cell : BatchPhases::capacity; }
 
-  /// Brings what is left to the stack.
+  /// Brings the rest to the stack.
   void finish() {
     if (!in_place_ && touched_.samples() > 0) empty_buffer();
     if (exact_) add_to_stack(*exact_);
@@ -101,12 +102,12 @@ class TileSum {
 
   const WideSetup<Real>& setup_;
   const StackTask& task_;
-  int plane_;  ///< in the stack, of the first that the task touches
+  int plane_;  ///< place in the stack of the first plane that the task touches
   bool in_place_;
   StackBuffer<Real>& buffer_;
   PlaneStack<Real>& stack_;
   TouchedCells<Real> touched_;                ///< since the buffer was emptied
-  std::optional<StackBuffer<double>> exact_;  ///< what was added up before, where samples crowd
+  std::optional<StackBuffer<double>> exact_;  ///< the sum so far, where samples crowd
 };
 
 }  // namespace misfit::imager

@@ -36,7 +36,7 @@ class TouchedCells {
     plane.add(batch.plane, batch.count, width_w_, planes_);
   }
   int samples() const { return samples_; }
-  /// How many of them a cell has taken on average.
+  /// The mean number of samples that a cell has taken.
   double samples_a_cell() const {
     const double cells = static_cast<double>(column.length()) * row.length() * plane.length();
     return static_cast<double>(samples_) * width_ * width_ * width_w_ / std::max(cells, 1.0);

@@ -10,13 +10,13 @@
 
 namespace misfit::imager {
 
-/// What adjoint and prediction of a wide transform share: the kernels' taps, and the stack that every facet has.
+/// Data that adjoint and prediction of a wide transform share: the kernels' taps, and the shape of every facet's stack.
 template <typename Real>
 struct WideSetup {
   WideTransformOptions options;
   StackShape shape;
   StackTaps<Real> taps;
-  std::vector<StackedFacet> facets;  ///< those that reach above the horizon
+  std::vector<StackedFacet> facets;  ///< facets that reach above the horizon
 
   StackOrderOptions ordering(const StackedFacet& f) const {
     return {shape, taps.w.width, StackScale(shape, f.facet, f.plane_step), options.threads};
@@ -33,7 +33,7 @@ WideSetup<Real> wide_setup(const WideTransformOptions& options);
 int most_pairs(const WideTransformOptions& options, int grids);
 /// Rows of tiles in a band: as many as a cache shared among processors can hold.
 int tiles_a_band(const WideTransformOptions& options, int pairs, int grids);
-/// Bytes of so many pairs' band and of what the image keeps of it.
+/// Bytes of a band of `pairs` pairs, and of the columns that the image keeps of it.
 double bytes_of_pairs(const WideTransformOptions& options, int pairs, int grids);
 
 /// Calls visit(row, chunk, plane, grid, cells) for rows and planes that a tile's buffer and a stack share, in the stack's
@@ -51,8 +51,8 @@ StackBuffer<Real> buffer_of(const WideSetup<Real>& setup, int grids) {
   return StackBuffer<Real>(setup.shape.tile, setup.shape.width, grids);
 }
 
-/// Whether a tile holds so few samples that it is gridded and degridded where it lies in the stack: a buffer costs more to
-/// bring and to add.
+/// Whether a tile holds so few samples that it is gridded and degridded in place in the stack: a buffer costs more to bring and
+/// to add.
 bool is_sparse(const StackOrder& order, const StackTask& task);
 
 }  // namespace misfit::imager
