@@ -20,7 +20,7 @@ struct MisfitKernel {
 namespace misfit::kernels {
 namespace {
 
-/// Of a fixed size, so that keeping a message cannot fail.
+/// The message has a fixed size, so that keeping one cannot fail.
 thread_local std::array<char, 1024> last_error{};
 
 /// Keeps "function: message", on one line.
@@ -32,7 +32,7 @@ MisfitKernelStatus failed(MisfitKernelStatus status, const char* function, const
   return status;
 }
 
-/// Calls, and makes what is thrown a status.
+/// Calls `call`, and turns an exception into a status.
 template <typename Call>
 MisfitKernelStatus status_of(const char* function, Call call) noexcept {
   try {
@@ -58,7 +58,7 @@ const Kernel& of(const MisfitKernel* handle) {
   return handle->kernel;
 }
 
-/// Stores what `make` makes as a new handle, or null if it throws.
+/// Stores the result of `make` as a new handle, or null if it throws.
 template <typename Make>
 MisfitKernelStatus made(const char* function, MisfitKernel** kernel, Make make) noexcept {
   if (kernel != nullptr) *kernel = nullptr;
@@ -84,10 +84,10 @@ std::string text_of_all(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-/// What numbers must be.
+/// A condition on numbers.
 struct Condition {
   bool (*holds)(double);
-  const char* text;  ///< what follows one that is not so
+  const char* text;  ///< the words behind a number that fails
 
   void check(double value, const std::string& name) const {
     if (!holds(value)) throw std::invalid_argument(name + " = " + text_of_all(value) + text);
@@ -97,7 +97,7 @@ struct Condition {
 constexpr Condition within_half{[](double value) { return std::abs(value) <= 0.5; }, " not in [-0.5, 0.5]"};
 constexpr Condition is_finite{[](double value) { return std::isfinite(value); }, "; expected a finite number"};
 
-/// An array of a caller's, and one for as many results.
+/// A caller's array, and one for as many results.
 struct Arrays {
   const char* name;
   const double* in;
@@ -111,7 +111,7 @@ struct Arrays {
     for (std::size_t i = 0; i < count; ++i)
       if (!condition.holds(in[i])) condition.check(in[i], std::string(name) + "[" + std::to_string(i) + "]");
   }
-  /// Stores values(numbers) of some thousand at once, since the memory that is needed meanwhile grows with them.
+  /// Stores values(numbers), some thousand at a time, since the memory needed meanwhile grows with their number.
   template <typename Values>
   void fill(Values values) const {
     constexpr std::size_t at_once = 4096;

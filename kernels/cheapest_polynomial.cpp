@@ -35,7 +35,7 @@ ComplexMatrix turns(const Vector& a, const Vector& b) {
   return turn;
 }
 
-/// Legendre terms over t of what the kernel should add up to and of what it does: [k][x].
+/// Legendre terms over t, [k][x], of the exact phasor and of the kernel's sum.
 struct Expanded {
   ComplexMatrix wanted;  ///< exp(2πitx)
   ComplexMatrix sum;     ///< Σ_r C_r(t) exp(2πi s_r x)

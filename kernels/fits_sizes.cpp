@@ -34,8 +34,8 @@ class Header {
   }
   /// The value of the next card, which must have this key.
   long long whole(const std::string& key, long long least, long long most) { return whole_of(next(), key, least, most); }
-  /// Goes to the card END. Returns the size of all. The heap of a table may begin anywhere in `data` bytes. What gives sizes,
-  /// and the card that begins a header, is there once: a header that lacks its END goes on into the next one.
+  /// Goes to the card END. Returns the size of the header. The heap of a table may begin anywhere in `data` bytes. Cards that
+  /// give sizes, or begin a header, may occur once: a header that lacks its END goes on into the next one.
   /// CFITSIO believes PCOUNT and GCOUNT of a primary header, too, wherever they stand.
   std::uint64_t end(double data, bool is_extension) {
     constexpr std::array once{"SIMPLE", "XTENSION", "BITPIX", "NAXIS"};
@@ -53,7 +53,7 @@ class Header {
   }
 
  private:
-  /// As CFITSIO takes it, whatever follows.
+  /// The keyword as CFITSIO reads it, whatever follows.
   static std::string key_of(const std::string& card) {
     return card.substr(0, std::min<std::size_t>(8, card.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-")));
   }
@@ -100,7 +100,7 @@ std::uint64_t hdu_size(const FitsBytes& file, std::uint64_t begin) {
   return header + blocks(static_cast<std::uint64_t>(data));
 }
 
-/// Whether a reader takes for a header what begins there.
+/// Whether a reader would take the bytes there for a header.
 bool is_header(const FitsBytes& file, std::uint64_t at) {
   const std::string key = at < file.size ? file.read(at, 8) : "";
   return key == "XTENSION" || key == "SIMPLE  ";

@@ -30,7 +30,7 @@ void* within_limit(void* memory, std::size_t size) {
   return size <= largest_file ? std::realloc(memory, size) : nullptr;
 }
 
-/// A FITS file in memory. CFITSIO has no part in files on the disk, so that these are whole or not there.
+/// A FITS file in memory. CFITSIO does not touch files on the disk, so that these are whole or absent.
 class FitsMemory {
  public:
   explicit FitsMemory(std::string doing) : doing_(std::move(doing)) {

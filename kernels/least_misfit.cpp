@@ -23,7 +23,7 @@ const std::array<ArithmeticFacts, 3> arithmetics{{{Arithmetic::binary64, "double
 constexpr double rounding_of_a_start = 1e-2;
 constexpr double rounding_of_a_result = 1e-6;
 
-/// Enough for E to 1e-8 relative over the whole range of widths and x0; the hardest is x0 towards ½.
+/// So many nodes that E is right to 1e-8 of itself for all widths and x0; x0 towards ½ is the hardest.
 int nodes_for(int width, double x0) {
   return width + width / 2 + (x0 > 0.42 ? 22 : 14);
 }
@@ -82,7 +82,7 @@ MisfitSolution least_misfit_solution(int width, double x0) {
     before = last;
     last = minimise_misfit(problem, arithmetic, rounding_of_a_start);
   }
-  // What the start is good for already is not asked of the wider arithmetic again.
+  // A step that the start already allows is not asked of the wider arithmetic again.
   const int nodes = nodes_for(width, x0);
   const MisfitProblem problem{width, x0,  nodes, Eigen::VectorXd::Ones(nodes), last.minimum.log_h, last.minimum.log_h,
                               1e-10, 1e-8};

@@ -34,8 +34,8 @@ struct Weighted {
   MisfitSolution solution;
 };
 
-/// Reweights until the largest ℓ is near its bound. The weights need no more than a percent, which the narrowest arithmetic
-/// gives that knows E at all.
+/// Reweights until the largest ℓ is near its bound. Weights need to be right to a percent only, which the narrowest arithmetic
+/// gives that can compute E.
 Weighted reweight(const MisfitSolution& start, int width, double x0, int& iterations) {
   constexpr double enough = 1.03;  // leaves the rest of the 5% to maxima between nodes and to the stored polynomial
   constexpr int most_rounds = 400;

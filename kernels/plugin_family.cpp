@@ -27,7 +27,7 @@ constexpr std::string_view prefix = "libmisfit_kernel_", ending = ".so";
   throw std::runtime_error(whose + " " + message);
 }
 
-/// What other people's code throws, as an error of `where()`'s, on one line.
+/// Turns exceptions of other people's code into an error about `where()`, on one line.
 template <typename Call, typename Where>
 auto translated(Call call, Where where) {
   try {
@@ -66,7 +66,7 @@ Register load(const std::string& file, const std::string& function) {
   return reinterpret_cast<Register>(found);
 }
 
-/// With room for what libraries for an interface yet to come may fill in.
+/// The struct, with room for fields that libraries for a later interface may fill in.
 struct Form {
   MisfitKernelPlugin plugin;
   std::array<unsigned char, 4096> beyond;
@@ -103,7 +103,7 @@ void check(const MisfitKernelPlugin& p, const std::string& whose, const std::str
                     "; expected min_x0 above 0, and max_x0 from there to below 0.5, or 0 for what is usual");
 }
 
-/// One function of a library's: for a width and an x0.
+/// A library's function for one width and x0.
 struct PluginFunction {
   std::string kernel;  ///< with the file it comes from, as messages name it
   MisfitKernelPlugin plugin;

@@ -9,7 +9,7 @@ namespace {
 constexpr int smooth_points = 28;
 constexpr int most_pairs = 256;
 
-/// Pairs of pieces [k/steps, (k+1)/steps], and how much of [0, ½] each stands for.
+/// Pairs of pieces [k/steps, (k+1)/steps], and the part of [0, ½] that each stands for.
 struct Pairs {
   Eigen::VectorXd begin;
   Eigen::VectorXd weight;

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 fs::path temporary_beside(const fs::path& path) {
   std::random_device random;
   std::ostringstream name;
-  name.imbue(std::locale::classic());  // digits in groups would make it another name
+  name.imbue(std::locale::classic());  // grouped digits would make another name
   name << path.string() << '.' << std::hex << std::setfill('0') << std::setw(8) << random() << std::setw(8) << random()
        << ".part";
   return name.str();
