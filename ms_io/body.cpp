@@ -13,8 +13,8 @@ namespace {
 
 using casacore::MDirection;
 
-/// From the middle of the Earth to the observer, in metres and along the axes of J2000. Aberration turns a direction and its
-/// opposite alike, so that half their difference is free of it but for 1e-8.
+/// The vector from the middle of the Earth to the observer, in metres along the axes of J2000. Aberration turns a direction and
+/// its opposite alike, so that half their difference is free of it to 1e-8.
 casacore::MVPosition observer_m(const casacore::MeasFrame& frame) {
   const casacore::MVPosition here =
       casacore::MPosition::Convert(*dynamic_cast<const casacore::MPosition*>(frame.position()), casacore::MPosition::ITRF)()

@@ -66,7 +66,7 @@ casacore::ObsInfo obs_info(const imager::Observation& observation, const imager:
   return info;
 }
 
-/// The slant of a SIN projection; of others, which have no parameters, none.
+/// The slant of a SIN projection; 0 for others, which have no parameters.
 std::array<double, 2> slant_of(const casacore::Projection& projection, const std::string& path) {
   const casacore::Vector<double>& parameters = projection.parameters();
   if (projection.type() == casacore::Projection::SIN && parameters.size() == 2) return {parameters[0], parameters[1]};
@@ -98,7 +98,7 @@ imager::SkyGrid grid_of(casacore::DirectionCoordinate direction, const casacore:
   return grid;
 }
 
-/// Tells whether the name of an axis, of neither directions, frequencies nor Stokes parameters, means nothing.
+/// Whether the name of an axis that is neither of directions, frequencies nor Stokes parameters means nothing.
 bool says_nothing(std::string name) {
   for (char& letter : name) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
   return name.empty() || name.rfind("linear", 0) == 0 || name.rfind("pixel", 0) == 0 || name.rfind("axis", 0) == 0;
@@ -147,7 +147,7 @@ std::vector<imager::Stokes> stokes_of(const casacore::StokesCoordinate& coordina
   return list;
 }
 
-/// What a coordinate says of all pixels where it has an axis of the world and none of pixels; none otherwise.
+/// The value that a coordinate has for all pixels, where it has a world axis and no pixel axis; else none.
 std::optional<double> value_without_pixels(const casacore::CoordinateSystem& coordinates, casacore::Coordinate::Type type) {
   const casacore::Int coordinate = coordinates.findCoordinate(type);
   if (coordinate < 0) return std::nullopt;
@@ -161,7 +161,7 @@ std::optional<double> value_without_pixels(const casacore::CoordinateSystem& coo
       .getBaseValue();
 }
 
-/// Of all pixels, as header_of() has it.
+/// Reads values that hold for all pixels, see header_of().
 void read_axes_without_pixels(const casacore::CoordinateSystem& coordinates, imager::ImageHeader& header,
                               const std::string& path) {
   if (const auto frequency_hz = value_without_pixels(coordinates, casacore::Coordinate::SPECTRAL)) {

@@ -20,7 +20,7 @@
 namespace misfit::ms_io {
 namespace {
 
-/// What `info` holds under a name, in any kind of number; `otherwise` where it holds none.
+/// The number of any type that `info` holds under a name, or `otherwise`.
 double number_in(const casacore::TableRecord& info, const std::string& name, double otherwise) {
   if (!info.isDefined(name)) return otherwise;
   switch (info.dataType(name)) {
@@ -117,8 +117,8 @@ class CasaImageReader : public imager::ImageReader {
   imager::ImageHeader header_;
 };
 
-/// The tables that an image holds, of masks and of a log, lie in its folder: casacore would look for others wherever the image
-/// says.
+/// Throws unless the tables of an image, its masks and its log, lie in its folder: casacore would look for them wherever the
+/// image says.
 void check_tables(const casacore::TableRecord& keywords, const std::string& image, const std::string& path) {
   for (casacore::uInt field = 0; field < keywords.nfields(); ++field) {
     if (keywords.dataType(field) == casacore::TpRecord) check_tables(keywords.subRecord(field), image, path);
@@ -130,7 +130,7 @@ void check_tables(const casacore::TableRecord& keywords, const std::string& imag
   }
 }
 
-/// Of masks that an image has, that which holds unless told otherwise; one may be an expression about other images.
+/// Throws where the image's default mask cannot be used: it may be an expression about other images.
 void check_mask(const casacore::TableRecord& keywords, const std::string& path) {
   if (!keywords.isDefined("Image_defaultmask") || !keywords.isDefined("masks")) return;
   const std::string mask = keywords.asString("Image_defaultmask");

@@ -78,11 +78,11 @@ constexpr ssize_t tile_side = 512;
 struct Band {
   casacore::IPosition first;
   casacore::IPosition shape;
-  std::size_t begin;  ///< its pixels in the plane
+  std::size_t begin;  ///< of its pixels in the plane
   std::size_t end;
 };
 
-/// What of(pixel) is of a band.
+/// The values of(pixel) of a band.
 template <typename Value, typename Function>
 casacore::Array<Value> values_of(const imager::Image& image, const Band& band, const Function& of) {
   casacore::Array<Value> values(band.shape);
@@ -173,7 +173,7 @@ class CasaImageWriter : public imager::ImageWriter {
     }
   }
 
-  /// Leaves out what has no value in `image`, of the image's planes, beside what is left out before.
+  /// Masks pixels of a band that have no value in `image`, besides those that are masked already.
   void mask_band(const imager::Image& image, const Band& band) {
     const auto valueless = [](double pixel) { return std::isnan(pixel); };
     if (std::none_of(image.pixel.data() + band.begin, image.pixel.data() + band.end, valueless)) return;
@@ -183,7 +183,8 @@ class CasaImageWriter : public imager::ImageWriter {
     image_->pixelMask().putSlice(mask, band.first);
   }
 
-  /// Tables that are to be deleted are not written when they are closed, which on a full disk would throw where nobody catches.
+  /// Marks the tables for deletion: they are then not written when they are closed, which on a full disk would throw where
+  /// nobody catches.
   void abandon() {
     if (!image_) return;
     for (const char* part : {"", "/logtable", "/mask0"}) try {

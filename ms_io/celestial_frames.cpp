@@ -30,16 +30,16 @@ const std::array<std::pair<const char*, MDirection::Types>, 3> further_frames{{
     {"SUPERGAL", MDirection::SUPERGAL},
 }};
 
-/// Galactic coordinates as J2000 has them: where their pole lies, and at which longitude that of the Earth. They were defined
-/// in B1950 (Blaauw et al. 1960, MNRAS 121, 123), by a pole at 12h49m, +27.4° and the longitude 123° of the Earth's; these are
-/// that definition turned to J2000 without the terms of aberration (Murray 1989, A&A 218, 325), as astropy, and to 2 mas
-/// SLALIB, DS9 and CARTA have it. casacore leaves the terms in, and lies 0.5 arcsec away; the Hipparcos Catalogue, and SOFA
+/// Galactic coordinates in J2000: the direction of their pole, and the longitude of the celestial pole. They were defined in
+/// B1950 (Blaauw et al. 1960, MNRAS 121, 123), by a pole at 12h49m, +27.4° and the longitude 123° of the celestial pole. These
+/// numbers are that definition turned to J2000 without the terms of aberration (Murray 1989, A&A 218, 325), as in astropy, and
+/// to 2 mas in SLALIB, DS9 and CARTA. casacore leaves the terms in, and lies 0.5 arcsec away; the Hipparcos Catalogue, and SOFA
 /// after it, takes the first digits for ICRS, 0.025 arcsec away.
 constexpr double rad_per_deg = imager::pi / 180;
 constexpr double pole_ra_rad = 192.8594812065348 * rad_per_deg, pole_dec_rad = 27.12825118085622 * rad_per_deg,
                  pole_longitude_rad = 122.9319185680026 * rad_per_deg;
 
-/// The longitude from the other pole and the latitude, of those from one pole.
+/// Longitude and latitude about one pole, turned to longitude and latitude about the other.
 std::pair<double, double> about_other_pole(double longitude_rad, double latitude_rad) {
   const double x = std::cos(latitude_rad) * std::cos(longitude_rad), y = std::cos(latitude_rad) * std::sin(longitude_rad);
   const double z = std::sin(latitude_rad), c = std::cos(pole_dec_rad), s = std::sin(pole_dec_rad);

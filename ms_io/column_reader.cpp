@@ -55,7 +55,7 @@ void ColumnReader::read_rows(const Rows& rows, const Setup& setup, StoredRows& s
 
 namespace {
 
-/// A row that is flagged may have a time at which a field that moves is nowhere.
+/// The frame ratio of a row. A flagged row may have a time at which the place of a moving field is not known.
 double frame_ratio_of(FrameRatio& ratio, const StoredRows& stored, std::size_t row) {
   try {
     return ratio.at(stored.time_s[row]);
@@ -86,8 +86,8 @@ void ColumnReader::find_frame_ratios(const Rows& rows, const Setup& setup, Store
   });
 }
 
-/// An IncrementalStMan searches for every row whose value is not that of the row before; rows all of whose samples are flagged
-/// need none.
+/// An IncrementalStMan searches for every row whose value differs from the row before; rows whose samples are all flagged need
+/// no FLAG_ROW.
 void ColumnReader::read_flag_rows(const Rows& rows, StoredRows& stored) const {
   if (!flag_row_is_dear_) return read(flag_row_, rows, stored.flag_row);
   stored.flag_row.resize(rows.count());
@@ -118,8 +118,9 @@ void ColumnReader::require_shape(const Cells<T>& cells, const Rows& rows, const 
     if (!cells.shapes.one || !cells.column.isDefined(rows[r])) require_cell(cells, rows[r], shape);
 }
 
-/// casacore 3.5 throws where a cell is undefined or has another shape, save where it reads a whole column: there it takes one
-/// shape for granted, and ends the program at an undefined cell; and save where it reads slices, of whatever holds them.
+/// casacore 3.5 throws where a cell is undefined or has another shape, with two exceptions: reading a whole column it takes one
+/// shape for granted, and ends the program at an undefined cell; and reading slices it takes cells of any shape that holds
+/// them.
 template <typename T, typename Action>
 void ColumnReader::reading_cells(const Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape, bool sliced,
                                  const Action& action) const {
@@ -140,7 +141,7 @@ void ColumnReader::read_cells(const Cells<T>& cells, const Rows& rows, const cas
   reading_cells(cells, rows, shape, false, [&] { read(cells.column, rows, values); });
 }
 
-/// A column of a few values a row, of which casacore reads the whole many times as fast as ranges of rows.
+/// Reads a column of a few values a row as a whole: casacore is then many times as fast as with ranges of rows.
 template <typename T>
 void ColumnReader::read_narrow(Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape,
                                casacore::Array<T>& values) const {
@@ -160,7 +161,7 @@ void ColumnReader::read_narrow(Cells<T>& cells, const Rows& rows, const casacore
   }
 }
 
-/// All the correlations of the channels needed. Reading every correlation is faster than a strided slice of two of four.
+/// Reads all correlations of the channels needed. Reading every correlation is faster than a strided slice of two of four.
 template <typename T>
 void ColumnReader::read_channels(const Cells<T>& cells, const Rows& rows, const Setup& setup,
                                  casacore::Array<T>& values) const {
@@ -173,12 +174,12 @@ void ColumnReader::read_channels(const Cells<T>& cells, const Rows& rows, const 
   }
 }
 
-/// Tiled cells of one shape are never empty where they are defined.
+/// Whether a row has WEIGHT_SPECTRUM. Tiled cells of one shape are never empty where they are defined.
 bool ColumnReader::spectrum_defined(casacore::rownr_t row) const {
   return spectrum_.column.isDefined(row) && (spectrum_.shapes.one || spectrum_.column.shape(row).product() > 0);
 }
 
-/// How many of `rows` have WEIGHT_SPECTRUM.
+/// The number of `rows` that have WEIGHT_SPECTRUM.
 std::size_t ColumnReader::spectra_defined(const Rows& rows) const {
   if (!has_spectrum_) return 0;
   if (spectrum_.shapes.all) return rows.count();
@@ -189,7 +190,7 @@ std::size_t ColumnReader::spectra_defined(const Rows& rows) const {
   return defined;
 }
 
-/// WEIGHT_SPECTRUM where its cell is defined, else WEIGHT.
+/// Reads WEIGHT_SPECTRUM where its cell is defined, else WEIGHT.
 void ColumnReader::read_weights(const Rows& rows, const Setup& setup, StoredRows& stored) {
   const std::size_t defined = spectra_defined(rows);
   stored.weight_per_channel = defined > 0;

@@ -34,7 +34,7 @@ std::string number(double value) {
   return text.str();
 }
 
-/// As casacore finds it, but that it takes frames that it does not know for apparent places.
+/// The frame of a table, found as casacore does, except that casacore takes unknown frames for apparent places.
 std::optional<MDirection::Types> frame_in(const casacore::TableRecord& keywords) {
   if (!keywords.isDefined("posrefsys"))
     return keywords.isDefined("GeoDist") && keywords.asDouble("GeoDist") != 0 ? MDirection::TOPO : MDirection::APP;
@@ -100,7 +100,7 @@ std::vector<double> Ephemeris::values_of(const casacore::Table& table, const Col
   return values;
 }
 
-/// A column that nobody asks for is not looked at.
+/// The values of a column, read when they are first asked for.
 const std::vector<double>& Ephemeris::values_of(const Column& column) const {
   auto known = others_.find(column.name);
   if (known != others_.end()) return known->second;
@@ -134,7 +134,7 @@ Ephemeris::Stencil Ephemeris::stencil(double utc_mjd) const {
   return made;
 }
 
-/// A polynomial through unit vectors, normalised. Of rows 5 degrees apart it errs by 0.2 arcsec.
+/// Evaluates a polynomial through unit vectors, and normalises it. For rows 5 degrees apart it errs by 0.2 arcsec.
 MDirection Ephemeris::at(double utc_mjd) const {
   const Stencil rows = stencil(utc_mjd);
   for (std::size_t row = rows.first + 1; row < rows.first + rows.weight.size(); ++row) {

@@ -19,7 +19,7 @@ constexpr const char* remedies =
     "; select one with --field, or shift all to one direction with --phasecenter, which may also be TRACKFIELD where fields "
     "follow one ephemeris";
 
-/// The way of the selected fields to one phase centre.
+/// The search for one phase centre of the selected fields.
 class CentreSearch {
  public:
   CentreSearch(const casacore::MeasurementSet& set, const std::string& path, const Selection& selection, SelectedRows& selected)
@@ -55,14 +55,14 @@ class CentreSearch {
     return *selected_.beam_rad;
   }
 
-  /// Where the centre of an image of the field's rows is, unless they are all shifted to one direction.
+  /// The centre of an image of the field's rows, unless all rows are shifted to one direction.
   imager::SkyDirection moving_centre(int field, double time_s) {
     const FieldCentre there =
         selected_.body ? fields_.target(field, moment(field, time_s)) : fields_.centre(field, moment(field, time_s));
     return there.direction;
   }
 
-  /// How far a field, or what it follows, moves at some of its times, and what is to be said of that.
+  /// Finds how far a field, or what it follows, moves over some of its times, and adds remarks on that.
   void follow_motion(int field, const std::vector<double>& times) {
     constexpr std::size_t enough = 64;
     selected_.moving[field] = {times.front(), times.back()};
@@ -99,7 +99,7 @@ class CentreSearch {
                                ", and its rows are of telescopes in several places; expected those of one, by --observation");
   }
 
-  /// Shifts the rows of each field from where they are phased to to where `to` says.
+  /// Shifts the rows of each field from their phase centre to the direction of `to`.
   template <typename To>
   Nowhere lead_all(const To& to) {
     std::map<int, FieldShift> shifts;
@@ -123,7 +123,7 @@ class CentreSearch {
     return none ? FieldShift() : FieldShift(std::move(shifts));
   }
 
-  /// Flagged rows at whose times the field is nowhere stay where they are.
+  /// Adds shifts for flagged rows. Rows at whose times the field's place is not known stay where they are.
   template <typename At>
   void add_idle(int field, const std::vector<double>& times, const At& at, FieldShift::List& shifts) {
     std::size_t nowhere = 0;
@@ -145,13 +145,13 @@ class CentreSearch {
     return translated("cannot read TIME of " + path_, [&] { return casacore::ScalarColumn<double>(set_, "TIME")(row); });
   }
 
-  /// Whether some fields stand still, and those that may move hardly do.
+  /// Whether some fields stand still, and all others hardly move.
   bool some_hardly_move() {
     return times_.size() < selected_.first_row_of_field.size() && selected_.moved_rad <= noticed_motion_rad(beam_rad());
   }
 
-  /// Fields that stand still, or hardly move: nothing where they are phased to one direction, and one to shift to where
-  /// rounding parts them.
+  /// For fields that stand still, or hardly move: nothing where they are phased to one direction, or a direction to shift to
+  /// where they differ by rounding.
   Nowhere shift_from_rounding() {
     const FieldCentre first = usual_centre(fields_, set_, selected_, first_field(set_, selected_));
     double most_rad = selected_.moved_rad;
@@ -175,7 +175,7 @@ class CentreSearch {
                              " apart; select one with --field, or shift all to one with --phasecenter");
   }
 
-  /// Fields of which one or more move, each about a direction of the sky.
+  /// For fields of which one or more move: a direction of the sky to shift all to.
   Nowhere stand_still() {
     if (selected_.moved_rad > noticed_motion_rad(beam_rad()))
       selected_.remarks.push_back("field " + label(farthest_) + " moves by " + angle_words(selected_.moved_rad) +
@@ -184,7 +184,7 @@ class CentreSearch {
     return usual_centre(fields_, set_, selected_, first_field(set_, selected_)).direction;
   }
 
-  /// Fields of which one or more move, and which must be one.
+  /// For fields of which one or more move: the image moves with them, and all must move as one.
   Nowhere follow_one() {
     const int field = first_field(set_, selected_);
     require_one(&FieldDirections::centre);
@@ -206,8 +206,8 @@ class CentreSearch {
     return lead_all([&](int field, const Moment& when) { return fields_.target(field, when).direction; });
   }
 
-  /// That all fields move together, as far as can be told: where the ephemeris of one does not reach the times of another,
-  /// their names tell.
+  /// Requires that all fields move together, as far as can be told: where the ephemeris of one does not reach the times of
+  /// another, by their names.
   void require_one(Centre centre) {
     const int first = first_field(set_, selected_);
     for (const auto& [field, row] : selected_.first_row_of_field) {
@@ -225,7 +225,7 @@ class CentreSearch {
     }
   }
 
-  /// Nothing where `one` is nowhere at a time of `other`.
+  /// The distance of two fields; nothing where the place of `one` is not known at a time of `other`.
   std::optional<double> apart(Centre centre, int one, const Moment& when, int other) {
     const imager::SkyDirection there = (fields_.*centre)(other, when).direction;
     try {
@@ -241,7 +241,7 @@ class CentreSearch {
   SelectedRows& selected_;
   FieldDirections fields_;
   std::map<int, FieldTimes> times_;  ///< of fields that move
-  int farthest_ = 0;                 ///< the field of these that moves farthest
+  int farthest_ = 0;                 ///< the field that moves farthest
 };
 
 }  // namespace

@@ -46,7 +46,7 @@ Motion motion_of(MDirection::Types frame) {
   }
 }
 
-/// Of a cell.
+/// The frame of a cell.
 MDirection::Types frame_of_cell(const casacore::ArrayMeasColumn<MDirection>& column, casacore::rownr_t row) {
   try {
     const casacore::Array<MDirection> directions = column(row);
@@ -56,7 +56,7 @@ MDirection::Types frame_of_cell(const casacore::ArrayMeasColumn<MDirection>& col
   }
 }
 
-/// Throws what says that a cell is no direction, which casacore would take for some other one.
+/// Throws where a cell is no direction: casacore would take it for some direction.
 void require_direction(const casacore::ArrayColumn<double>& cells, const std::vector<double>& values) {
   constexpr double turn = 2 * imager::pi, pole = turn / 4 + 1e-7;  // as single precision rounds it
   const casacore::TableRecord& keywords = cells.keywordSet();
@@ -73,7 +73,8 @@ void require_direction(const casacore::ArrayColumn<double>& cells, const std::ve
   throw casacore::AipsError(message.str());
 }
 
-/// An offset along the circle of declination and along the meridian, `true_angle` of its right ascension too.
+/// A direction offset along the circle of declination and along the meridian; with `true_angle` the offset in right ascension
+/// is a true angle, too.
 MDirection beside(const MDirection& direction, const MDirection& offset, bool true_angle) {
   casacore::MVDirection moved = direction.getValue();
   const casacore::Vector<double> angles = offset.getAngle().getValue();
@@ -105,7 +106,7 @@ std::string FieldDirections::label(int field) const {
   return std::to_string(field) + " (" + name(field) + ")";
 }
 
-/// That a field has the directions that NUM_POLY tells of: casacore would look for them without.
+/// Requires that a field has the directions that NUM_POLY states: casacore would look for them in any case.
 void FieldDirections::require_directions(const casacore::ArrayColumn<double>& cells, casacore::rownr_t row) const {
   const int powers = std::max(columns_.numPoly()(row), 0);
   const casacore::IPosition shape = cells.shape(row);
@@ -122,7 +123,7 @@ bool FieldDirections::has_ephemeris(casacore::rownr_t row) const {
   return row < ephemeris_id_.size() && ephemeris_id_[row] >= 0 && columns_.numPoly()(row) <= 0;  // which goes before
 }
 
-/// Of which one is not 0.
+/// Whether a field has rates, one of which is not 0.
 bool FieldDirections::has_rates(const casacore::ArrayColumn<double>& cells, casacore::rownr_t row) const {
   const int powers = std::max(columns_.numPoly()(row), 0);
   const std::vector<double> values = cells(row).tovector();
@@ -153,7 +154,7 @@ double FieldDirections::time_s(const casacore::MEpoch& epoch) const {
   return casacore::MEpoch::Convert(epoch, casacore::MEpoch::castType(time_reference_.getType()))().get("s").getValue();
 }
 
-/// TIME as FIELD's own TIME counts it, which polynomials are of.
+/// A TIME relative to FIELD's own TIME, the origin of its polynomials.
 double FieldDirections::field_time_s(double time_s) const {
   const auto clock = casacore::MEpoch::castType(columns_.timeMeas().getMeasRef().getType());
   if (clock == casacore::MEpoch::castType(time_reference_.getType())) return time_s;
@@ -164,7 +165,7 @@ double FieldDirections::since_origin_s(int field, double time_s) const {
   return goes_by_rates(field) ? field_time_s(time_s) - columns_.time()(row_of(field)) : 0;
 }
 
-/// Null where the field has none.
+/// The ephemeris of a field; null where it has none.
 const Ephemeris* FieldDirections::ephemeris_of(casacore::rownr_t row) {
   if (!has_ephemeris(row)) return nullptr;
   const int id = ephemeris_id_[row];

@@ -26,7 +26,7 @@ void sort_once(std::vector<double>& times) {
   times.erase(std::unique(times.begin(), times.end(), [](double a, double b) { return !earlier(a, b); }), times.end());
 }
 
-/// Orders the times of a field that rows were seen to have.
+/// Sorts the times of a field's rows.
 void sort_out(const std::string& path, int field, FieldTimes& times) {
   sort_once(times.used);
   sort_once(times.idle);

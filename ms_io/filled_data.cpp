@@ -13,7 +13,7 @@ struct ReadPart {
   bool zero = true;
 };
 
-/// Takes out of `zero` the parts that have an id of which all parts are zero, and puts these together into `found`.
+/// Moves the parts of each id whose parts are all zero out of `zero`, and adds them, as one part, to `found`.
 void take_whole(int SelectionPart::*id, const std::vector<ReadPart>& all, std::vector<ReadPart>& zero,
                 std::vector<SelectionPart>& found) {
   std::map<int, ReadPart> whole;

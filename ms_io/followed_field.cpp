@@ -28,7 +28,7 @@ class FollowedField {
   casacore::MEpoch first() const { return fields_.epoch(moving_span(from_.selected).first_s); }
   casacore::MEpoch last() const { return fields_.epoch(moving_span(from_.selected).last_s); }
   std::string name() const { return fields_.name(field_); }
-  /// Whether it tells where it goes at a time: rates do while they are observed.
+  /// Whether the field's place is known at a time: by rates only while it is observed.
   bool goes_on(const casacore::MEpoch& when) const {
     const TimeSpan span = moving_span(from_.selected);
     return from_.selected.body || !fields_.goes_by_rates(field_) ||
@@ -43,7 +43,7 @@ class FollowedField {
     const Moment moment{time_s(when), from_.selected.first_row};
     return followed_centre(fields_, from_.selected, field_, moment).direction;
   }
-  /// Nothing where an ephemeris does not tell.
+  /// The place at a time; nothing where the ephemeris does not reach it.
   std::optional<imager::SkyDirection> known_at(const casacore::MEpoch& when) {
     try {
       return at(when);
@@ -103,7 +103,7 @@ void centre_in_middle(const OpenSets& sets, imager::Observation& observation) {
   }
 }
 
-/// The phase centre of the first set, where that of the other is to be shifted there.
+/// The phase centre of the first set, if the other set is to be shifted there.
 std::optional<imager::SkyDirection> centre_but_for_rounding(const OpenSet& first, const OpenSet& other) {
   const bool one_moves = first.selected.follows_field != other.selected.follows_field;
   if (first.selected.follows_field && !one_moves) return {};
@@ -116,7 +116,7 @@ std::optional<imager::SkyDirection> centre_but_for_rounding(const OpenSet& first
   return centre;
 }
 
-/// How far an image moves with the field of the set, and what that means, where that is noticed.
+/// A remark on how far an image moves with the field of the set, and what that means; empty where the motion is too small.
 std::string motion_remark(const OpenSet& set, const imager::Observation& observation) {
   const SelectedRows& selected = set.selected;
   if (!selected.follows_field || selected.moved_rad <= noticed_motion_rad(beam_of(set))) return "";
@@ -127,7 +127,7 @@ std::string motion_remark(const OpenSet& set, const imager::Observation& observa
          observation.moving_at + "; --phasecenter with a direction on the sky keeps that still";
 }
 
-/// Where frequencies are converted from or to those of the telescopes, and it is not known where one stands.
+/// Remarks where frequencies are converted from or to the telescopes' frames, and the place of a telescope is not known.
 std::vector<std::string> place_remarks(const OpenSet& set) {
   constexpr const char* own = "TOPOCENT";
   const std::string& frame = set.selected.spectral_frame;

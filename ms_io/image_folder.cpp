@@ -37,7 +37,7 @@ void ImageFolder::fail(const std::string& reason) const {
   throw std::runtime_error("cannot write " + path_ + ": " + reason);
 }
 
-/// Where the image lies that gives way, for the moment that two renames take.
+/// The place of the replaced image during the two renames.
 fs::path ImageFolder::old() const {
   return target_.string() + ".old";
 }
@@ -48,7 +48,7 @@ void ImageFolder::require_image_or_nothing() const {
     fail("it is there already and no casacore image; expected another name");
 }
 
-/// Removes what a run that was killed left of a table.
+/// Removes the remains of a table that a killed run left.
 void ImageFolder::remove_left(const fs::path& left) const {
   std::error_code error;
   if (!fs::exists(left, error)) return;
@@ -70,7 +70,8 @@ void ImageFolder::put_in_place() {
   forget_open_tables();
 }
 
-/// Who opens the path from here on gets what lies there now: casacore goes on with a table of that name which is still open.
+/// Makes casacore forget open tables of this path: it would go on with a table of that name which is still open, in place of
+/// the new one.
 void ImageFolder::forget_open_tables() const {
   casacore::TableCache& open = casacore::PlainTable::tableCache();
   for (const char* part : {"", "/mask0", "/logtable"}) open.remove(casacore::Path(target_.string() + part).absoluteName());

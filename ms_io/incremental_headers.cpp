@@ -67,20 +67,20 @@ class IncrementalStorage {
       bytes_.fail("rows up to " + std::to_string(first_row_.back()), "from 0 up to the table's " + std::to_string(table_.rows));
   }
 
-  /// In a cell.
+  /// The number of values in a cell.
   double values_of(const StoredColumn& column) const {
     return column.is_array ? product(column.shape, bytes_, "cells of " + column.name) : 1;
   }
 
-  /// Of a cell's value in a bucket; of texts, what they take at least.
+  /// The bytes of a cell's value in a bucket; for texts, the fewest that they take.
   double bytes_in_place(const StoredColumn& column) const {
     constexpr double place_of_array = 8;
     if (column.is_array && !column.in_place) return place_of_array;
     return std::ceil(values_of(column) * static_cast<double>(bits_of(column.type)) / 8);
   }
 
-  /// It has where its index begins, the values, and the index: of each column how many values, from which row on and where
-  /// each.
+  /// A bucket has the place of its index, the values, and the index: for each column the number of values, and the first row
+  /// and the place of each.
   void check_bucket(std::uint64_t bucket, std::uint64_t rows) {
     StoredBytes bytes(path_, bytes_.read(buckets_->at(bucket), buckets_->size()));
     constexpr std::uint64_t wide_rows = 0xf0000000;

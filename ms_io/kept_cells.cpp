@@ -19,7 +19,7 @@ class KeptBytes {
  public:
   explicit KeptBytes(const std::string& bytes) : bytes_(bytes) {}
 
-  /// 0 behind the end.
+  /// The next number; 0 behind the end.
   std::uint64_t number() {
     std::uint64_t value = 0;
     if (bytes_.size() - at_ >= sizeof value) copy(&value, sizeof value);
@@ -41,7 +41,7 @@ std::uint64_t checksum_of(const std::string& bytes, std::size_t count) {
   return Fingerprint().add(bytes.data(), count).value();
 }
 
-/// The file's bytes without the checksum at their end; nothing where that is wrong or there is no file.
+/// The file's bytes without the checksum at their end; nothing where the checksum is wrong or there is no file.
 std::string read_checked(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(file), {}};

@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Requests of processes that wait: how many there are, and two numbers for each of at most 32; then the length of the state of
-// the table, and the state. Numbers are 32-bit, the highest byte first.
+// The file's layout: the number of requests of waiting processes, and two numbers for each of at most 32; the length of the
+// table's state, and the state. Numbers are 32-bit, the highest byte first.
 constexpr std::size_t most_requests = 32, length_at = 4 * (1 + 2 * most_requests), state_at = length_at + 4;
 
 std::uint32_t number_at(const std::array<unsigned char, state_at>& head, std::size_t at) {

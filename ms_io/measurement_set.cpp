@@ -59,7 +59,7 @@ std::shared_ptr<const OpenSet> open_selected(const NamedSet& named, const Select
   return opened;
 }
 
-/// In the order in which they were observed, so that nothing depends on the order in which they are named.
+/// Sorts sets by the time of observation, so that nothing depends on the order in which they are named.
 void sort_by_time(OpenSets& sets) {
   const auto key = [](const std::shared_ptr<const OpenSet>& set) {
     double lowest_hz = std::numeric_limits<double>::infinity();
@@ -85,7 +85,7 @@ std::uint64_t largest_group(const SelectedRows& selected) {
   return most;
 }
 
-/// The columns that `names` has between commas, one for each of `sets`.
+/// The columns named in `names`, separated by commas, one for each of `sets`.
 std::vector<std::string> columns_of(const std::string& names, std::size_t sets) {
   std::vector<std::string> columns(1);
   for (const char c : names) {

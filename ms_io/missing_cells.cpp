@@ -16,10 +16,10 @@ using Column = casacore::ArrayColumn<casacore::Complex>;
 
 struct MissingCell {
   casacore::rownr_t row;
-  casacore::IPosition shape;  ///< that it shall have
+  casacore::IPosition shape;  ///< that it is to have
 };
 
-/// But for rows of a DATA_DESC_ID that does not exist, which nothing selects.
+/// The cells without a shape, except in rows of a DATA_DESC_ID that does not exist, which nothing selects.
 std::vector<MissingCell> missing_cells(const casacore::MeasurementSet& set, const std::string& name) {
   const Column column(set, name);
   std::vector<MissingCell> missing;
@@ -48,7 +48,7 @@ void link_files(const fs::path& table, const fs::path& folder, const std::string
   }
 }
 
-/// Moves what is no link from `folder` to `table`: files that only the new index names, and that index last.
+/// Moves files that are no links from `folder` to `table`: files that only the new index names, and the index last.
 void move_files(const fs::path& folder, const fs::path& table, const std::string& index) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const fs::path name = entry.path().filename();

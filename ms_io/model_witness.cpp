@@ -16,7 +16,7 @@ std::uint64_t fingerprint(const casacore::Complex* correlations, std::size_t cou
   return Fingerprint().add(correlations, count * sizeof(casacore::Complex)).value();
 }
 
-/// Of one channel of a cell; 0 where there is none.
+/// The fingerprint of one channel of a cell; 0 where there is none.
 std::uint64_t fingerprint(const Column& column, std::uint64_t row, std::uint64_t channel) {
   if (row >= column.nrow() || !column.isDefined(row)) return 0;
   const casacore::IPosition shape = column.shape(row);

@@ -71,7 +71,7 @@ std::string identity_of(const ModelOrigin& origin) {
   return fingerprint == 0 ? "-" : hexadecimal(fingerprint);
 }
 
-/// Where the block lies; rows with a non-finite UVW are put at 0 and marked.
+/// The coordinates of the block; rows with a non-finite UVW are put at 0 and marked.
 imager::SampleCoordinates coordinates(const casacore::ArrayColumn<double>& uvw_column, const Rows& rows, const Setup& setup,
                                       std::vector<bool>& unknown) {
   casacore::Array<double> uvw;
@@ -87,7 +87,7 @@ imager::SampleCoordinates coordinates(const casacore::ArrayColumn<double>& uvw_c
   return where;
 }
 
-/// At `where` of the set itself, of a model about the phase centre that `shifts` lead to.
+/// The visibilities at the set's own coordinates `where`, of a model about the phase centre that `shifts` lead to.
 StokesVisibilities predicted(const Predict& predict, const imager::RowShifts& shifts, const imager::SampleCoordinates& where,
                              const std::vector<bool>& unknown) {
   imager::SampleCoordinates shifted = where;
@@ -119,7 +119,7 @@ struct PredictedBlock {
 
   PredictedBlock(const BlockRows& block, const std::vector<Setup>& setups) : setup(&setups[block.setup]), rows(block.runs) {}
 
-  /// Another thread predicts, and forms what is to be stored; casacore is for one thread alone.
+  /// Has another thread predict, and form the cells to be stored; casacore is for one thread alone.
   void begin(const Predict& predict) {
     formed = std::async(std::launch::async,
                         [this, &predict] { cells.form(rows, *setup, predicted(predict, shifts, where, unknown)); });
@@ -224,7 +224,7 @@ class ModelWriter {
     return found == journal.done_below.end() ? 0 : found->second;
   }
 
-  /// Takes up what an earlier run left, where that is the beginning of this one. Returns whether it is.
+  /// Continues the rows of an earlier run, if they are the beginning of this one. Returns whether they are.
   bool go_on() {
     const std::optional<ModelJournal> before = read_journal(set_, column_.name);
     if (!before) return false;
@@ -248,8 +248,8 @@ class ModelWriter {
 
   enum class Left { beginning, other_data, changed, another };
 
-  /// What the column holds of the run whose journal this is: the beginning of this one, or that of other data, or what another
-  /// program wrote, or another run's.
+  /// What the column holds of the run that wrote the journal `before`: the beginning of this run, the beginning from other
+  /// data, changes by another program, or another run's rows.
   Left what_is_left(const ModelJournal& before) {
     if (outlived(set_, before)) return Left::changed;
     if (journal_.identity.empty() || before.identity != journal_.identity) return Left::another;
@@ -271,7 +271,7 @@ class ModelWriter {
     return same_data ? Left::beginning : Left::other_data;
   }
 
-  /// Throws where the data lack this model already; tells where they lack another.
+  /// Throws where the data in place lack this model already; tells the origin of all models that they lack.
   void tell_of_subtracted() const {
     if (column_.subtracted_from.empty()) return;
     for (const SubtractedModel& one : subtracted_models(set_, column_.subtracted_from)) {
@@ -284,7 +284,7 @@ class ModelWriter {
     }
   }
 
-  /// Of the column when it is complete: those that the data lacked, this one, and those of other selections.
+  /// The models that the complete column lacks: those that the data lacked, this one, and those of other selections.
   std::vector<SubtractedModel> models_that_are_lacking() const {
     std::vector<SubtractedModel> models;
     const bool subtracts = !column_.subtracted_from.empty();
@@ -300,7 +300,7 @@ class ModelWriter {
     return models;
   }
 
-  /// A run that was cut short while it wrote a block in place of the data left some of it written.
+  /// Takes back the block that was being written, in place of the data, when a run was cut short: some of it is written.
   void take_back_block_that_was_cut() {
     translated(doing_(), [&] {
       kept_.put_back(journal_, selected_.setups, *cells_);

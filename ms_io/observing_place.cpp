@@ -24,7 +24,8 @@ namespace {
 using casacore::MPosition;
 using Point = std::array<double, 3>;  // ITRF, m
 
-/// The Earth's radius is 6 357 km at the poles and 6 378 km at the equator: antennas stand between these.
+/// Antennas whose distance from the Earth's middle lies between these have a place: the Earth's radius is 6 357 km at the poles
+/// and 6 378 km at the equator.
 constexpr double least_radius_m = 6.3e6, most_radius_m = 6.5e6;
 
 Point point_of(const MPosition& position) {
@@ -54,7 +55,7 @@ constexpr std::pair<const char*, const char*> other_names[] = {
     {"MERLIN", "Lovell"},   {"UGMRT", "GMRT"}, {"PDBI", "NOEMA"}, {"IRAMPDB", "NOEMA"}, {"SKAMID", "MeerKAT"},
     {"SKA1MID", "MeerKAT"}, {"SKALOW", "MWA"}, {"SKA1LOW", "MWA"}};
 
-/// By the whole name: casacore alone would also take SKA1-MID for SKA, and K for KVN.
+/// The place of a telescope by its whole name: casacore alone would also take SKA1-MID for SKA, and K for KVN.
 std::optional<MPosition> place_by_name(const std::string& telescope) {
   std::string name = bare(telescope);
   for (const auto& [other, known] : other_names)
@@ -84,7 +85,7 @@ std::set<casacore::rownr_t> antennas_of(const casacore::MeasurementSet& set, int
   return antennas;
 }
 
-/// Where the antennas stand that do stand, of those that are in `some`.
+/// The places of the antennas in `some` that have one.
 template <typename Some>
 std::vector<Point> standing(const casacore::MSAntennaColumns& antennas, const Some& some) {
   std::vector<Point> points;
@@ -96,7 +97,7 @@ std::vector<Point> standing(const casacore::MSAntennaColumns& antennas, const So
   return points;
 }
 
-/// Axis by axis.
+/// The median, axis by axis.
 Point median(const std::vector<Point>& points) {
   Point middle{};
   for (std::size_t axis = 0; axis < middle.size(); ++axis) {

@@ -28,7 +28,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-/// What MSSelection reads of a set.
+/// The parts of a set that MSSelection reads.
 class Selectable : public casacore::MSInterface {
  public:
   explicit Selectable(const casacore::MeasurementSet& set)
@@ -108,7 +108,7 @@ void parse_windows(const casacore::MeasurementSet& set, const Selection& selecti
   }
 }
 
-/// What becomes of an expression.
+/// The ways to parse an expression.
 struct Parser {
   PerSet Selection::*expression;
   casacore::Bool (casacore::MSSelection::*give)(const casacore::String&);  ///< null: it is not MSSelection's
@@ -149,7 +149,7 @@ bool in_order_of_time(const casacore::MeasurementSet& set) {
   return std::is_sorted(time.begin(), time.end());
 }
 
-/// Where the selection holds [row]. casacore takes the date of a time without one from the first row, which is the earliest
+/// Whether the selection holds, [row]. casacore takes the date of a time without one from the first row, which is the earliest
 /// here.
 std::vector<bool> rows_in_order_of_time(const casacore::MeasurementSet& set, casacore::MSSelection& selection) {
   const casacore::MeasurementSet sorted(set.sort("TIME"));

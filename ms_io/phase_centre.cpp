@@ -13,7 +13,7 @@ namespace {
 
 using Vector = imager::UvwAxes::Vector;
 
-/// A unit vector in one frame as another has it, at a time.
+/// Converts a unit vector from one frame to another, at a time.
 Vector converted(const Vector& direction, const std::string& from, const std::string& to, const casacore::MeasFrame& when) {
   if (from == to) return direction;
   const casacore::MDirection there(casacore::MVDirection(direction[0], direction[1], direction[2]), direction_type(from));

@@ -27,7 +27,7 @@ std::string frame_named(const std::string& of) {
 /// The angle, which must have a unit or be sexagesimal.
 std::optional<double> angle_rad(const std::string& text) {
   if (is_sexagesimal(text)) return sexagesimal_rad(text, Colons::hours, Parts::some);
-  // Of units of time, which casacore takes for angles, none but the hour is meant for one.
+  // casacore takes all units of time for angles; only the hour is meant as one.
   const std::string unit = text.substr(std::min(text.find_last_of("0123456789.") + 1, text.size()));
   casacore::Quantity angle;
   if (unit.empty() || unit == "s" || unit == "m" || !casacore::MVAngle::read(angle, text)) return {};
@@ -57,11 +57,11 @@ std::optional<std::uint64_t> first_row_of(const casacore::MeasurementSet& set, i
 /// The direction that a text means.
 struct Meant {
   imager::SkyDirection direction;
-  std::string remark = {};  ///< empty, but of a field that moves, or could be taken for another
+  std::string remark = {};  ///< for a field that moves, or could be taken for another; else empty
   std::string label = {};   ///< of the field
 };
 
-/// Where a field is phased to and, where that moves, in the middle of its rows.
+/// The direction that a field is phased to; where that moves, in the middle of its rows.
 Meant centre_in(const casacore::MeasurementSet& set, const std::string& path, int field) {
   SelectedRows all;
   all.first_row = first_row_of(set, field).value_or(0);
@@ -83,7 +83,7 @@ Meant centre_in(const casacore::MeasurementSet& set, const std::string& path, in
 /// Directions of fields that are meant as one differ by no more.
 constexpr double meant_as_one_rad = 1e-9;
 
-/// Where the fields of one name are, of which those without rows count only where no other is there; they must be in one place.
+/// The direction of the fields of one name, which must be in one place. Fields without rows count only if all are without rows.
 Meant centre_of_namesakes(const casacore::MeasurementSet& set, const std::string& path, std::vector<int> named,
                           const std::string& text) {
   const auto has_rows = [&](int field) { return first_row_of(set, field).has_value(); };
@@ -100,7 +100,7 @@ Meant centre_of_namesakes(const casacore::MeasurementSet& set, const std::string
   return first;
 }
 
-/// Nothing where no field of the set has that id or name.
+/// The field that a text means; nothing where no field of the set has that id or name.
 std::optional<Meant> field_meant(const std::string& text, const std::string& path) {
   const casacore::MeasurementSet set = open_measurement_set(path, Access::read);
   return translated("cannot read FIELD of " + path, [&]() -> std::optional<Meant> {
@@ -126,7 +126,7 @@ std::optional<Meant> field_meant(const std::string& text, const std::string& pat
                            fields);
 }
 
-/// The first set that has such a field has the say.
+/// The field that a text means in the first set that has it.
 std::optional<Meant> field_of_sets(const std::string& text, const std::vector<std::string>& paths) {
   std::optional<Meant> first;
   for (const std::string& path : paths) {

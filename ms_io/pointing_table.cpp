@@ -48,7 +48,7 @@ struct PointingTable::Entry {
   double reach_s(double row_interval_s) const {
     return interval_s > 0 ? std::max(interval_s, row_interval_s) : std::numeric_limits<double>::infinity();
   }
-  /// Whether it alone says where the antenna was at a time.
+  /// Whether this entry alone gives the antenna's direction at a time.
   bool decides(double at_s, double row_interval_s) const {
     const bool stays = course || interval_s > 1.5 * row_interval_s;
     return stays && interval_s > 0 && std::abs(at_s - time_s) <= interval_s / 2;
@@ -80,7 +80,7 @@ MVDirection between(const MVDirection& a, const MVDirection& b, double t) {
 
 }  // namespace
 
-/// Where antennas stand, and how directions of their sky lie on that of the stars.
+/// The places of antennas, and the turn from their own sky to the sky of the stars.
 class PointingTable::Places {
  public:
   explicit Places(const OpenSet& open_set)

@@ -47,7 +47,7 @@ std::vector<Run> rows_in_order(const SelectedRows& selected) {
   return joined;
 }
 
-/// A row as its columns have it.
+/// The columns of a row.
 struct ObservedRow {
   int antenna_one = 0;
   int antenna_other = 0;
@@ -66,7 +66,7 @@ class Grouping {
         tolerance_(2 * std::sin(tolerance_rad / 2)),
         seen_(antennas_) {}
 
-  /// Where no row before is of any pointing, -1.
+  /// The pointing of the row before; -1 where none had one.
   int before() const { return last_; }
   bool has(int antenna) const { return antenna >= 0 && static_cast<casacore::rownr_t>(antenna) < antennas_; }
 
@@ -116,7 +116,7 @@ class Grouping {
   casacore::rownr_t antennas_;
   double tolerance_;  ///< as a chord
   RowTime when_;
-  std::vector<std::optional<Towards>> seen_;  ///< [antenna] at that time, as far as it was asked for
+  std::vector<std::optional<Towards>> seen_;  ///< [antenna] at that time; none where it was not asked for
   std::vector<Towards> known_;                ///< [pointing]
   std::vector<FieldPointing> pointings_;
   int last_ = -1;

@@ -37,7 +37,7 @@ std::uint64_t row_at(const OpenSet& open_set, std::uint64_t samples) {
   return low;
 }
 
-/// Null where there are none.
+/// The set with rows [first, end) alone; null where there are none.
 std::shared_ptr<const OpenSet> with_rows(const OpenSet& whole, std::uint64_t first, std::uint64_t end) {
   const auto part = std::make_shared<OpenSet>(whole);
   SelectedRows& selected = part->selected;

@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::size_t not_selected = std::numeric_limits<std::size_t>::max();
 
-/// A row of the main table, and what tells it from others of its time. Nothing but these decides which row is the first, so
-/// that the order of the table does not matter.
+/// A row of the main table, with the values that order rows of one time. Nothing else decides which row is the first, so that
+/// the order of the table does not matter.
 struct TimedRow {
   double time_s = 0;  ///< as the set stores it
   int field = 0;
@@ -145,7 +145,7 @@ void append(std::vector<Run>& runs, std::uint64_t first, std::uint64_t count) {
 
 namespace {
 
-/// Those of the selection, wherever they are phased to.
+/// The rows of the selection, wherever they are phased to.
 SelectedRows find_rows(const casacore::MeasurementSet& set, const std::string& path, const Selection& selection,
                        const RowUse& use) {
   const SetupTable table(set, path);

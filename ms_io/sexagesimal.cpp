@@ -16,7 +16,7 @@ std::string_view without_sign(std::string_view text) {
   return text.substr(!text.empty() && (text.front() == '-' || text.front() == '+') ? 1 : 0);
 }
 
-/// What ends the first part of an angle in parts; 0 where `text`, which has no sign, begins like none.
+/// The mark that ends the first part of a sexagesimal angle; 0 where `text`, which has no sign, does not begin like one.
 char first_mark(std::string_view text) {
   const std::size_t end = text.find_first_not_of(digits);
   if (end == 0 || end >= text.size()) return 0;

@@ -9,7 +9,7 @@
 namespace misfit::ms_io {
 namespace {
 
-/// One of each field: of several in the course of time the middle one.
+/// One pointing of each field: of several in the course of time the middle one.
 std::vector<FieldPointing> one_of_each_field(const OpenSet& open_set, const imager::SkyDirection& centre) {
   std::map<int, std::vector<FieldPointing>> of_field;
   for (FieldPointing& pointing : field_pointings(open_set, centre)) of_field[pointing.id].push_back(std::move(pointing));

@@ -10,9 +10,9 @@
 namespace misfit::ms_io {
 namespace {
 
-/// The setup with those of its channels that, as `window` has them, may come into a range: the telescope's velocity
-/// changes by 61 km/s in a year and a day, and that of a source, on its orbit about the Sun, by some 300 km/s more at the most;
-/// and interpolation takes a channel beyond.
+/// The setup with those of its channels that may come into a range; `window` has their frequencies. The telescope's velocity
+/// changes by 61 km/s in a year and a day, and the velocity of a source in its orbit about the Sun by some 300 km/s more at the
+/// most; interpolation takes a channel beyond.
 Setup between(const Setup& setup, const SpectralWindow& window, const FrequencyRange& range, bool of_source) {
   const double doppler = (of_source ? 400e3 : 61e3) / 2.99792458e8;
   Setup part = setup;

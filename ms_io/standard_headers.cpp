@@ -65,7 +65,8 @@ class StandardStorage {
     for (std::uint64_t i = 0; i < indices; ++i) indices_.push_back(read_index(index));
   }
 
-  /// What the buckets hold that the index lies in: each begins with the number of the next, twice, or it is part of one.
+  /// The bytes of the index, from the buckets that hold it: each begins with the number of the next, twice, or the index is
+  /// part of one bucket.
   std::string index_bytes(std::uint64_t buckets, std::uint64_t first, std::uint64_t offset, std::uint64_t length) {
     constexpr std::uint64_t link = 8;
     const std::uint64_t room = buckets_->size() - link;
@@ -117,7 +118,7 @@ class StandardStorage {
   static bool is_text(const StoredColumn& column) { return column.type == casacore::TpString && !has_fixed_length(column); }
   static bool has_fixed_length(const StoredColumn& column) { return !column.is_array && column.longest_text > 0; }
 
-  /// Of a cell among other columns.
+  /// The bits of a cell among other columns.
   double bits_in_place(const StoredColumn& column) const {
     constexpr double place_of_text = 96, place_of_array = 64;
     if (is_text(column)) return place_of_text;
@@ -142,7 +143,7 @@ class StandardStorage {
     if (is_text(columns_[c]) && product(columns_[c].shape, bytes_, "cells of " + columns_[c].name) > most_texts())
       bytes_.fail("cells of " + columns_[c].name + " of more texts", "no more than it holds");
   }
-  /// Of an array, empty ones and all.
+  /// The most texts of an array, empty ones included.
   double most_texts() const {
     constexpr std::uint64_t any_empty = 1 << 16;
     return static_cast<double>(std::max(any_empty, bytes_.size() / 4));
@@ -166,7 +167,8 @@ class StandardStorage {
     for_each_cell(c, 8, [&](ObjectReader& in) { arrays.check(in.integer(8), columns_[c]); });
   }
 
-  /// A cell has the bucket of its text, the place there and the length, or a short text; each has a place of its own.
+  /// Checks cells of texts: a cell has the bucket of its text, the place there and the length, or a short text; each text has a
+  /// place of its own.
   void check_texts(std::size_t c) const {
     constexpr std::int64_t longest_in_place = 8;
     TextBuckets texts(bytes_, *buckets_);
@@ -186,7 +188,7 @@ class StandardStorage {
     });
   }
 
-  /// Where the column has no shape, the array does, and whether it has its texts.
+  /// Checks an array of texts: it states its shape where the column has none, and whether it has its texts.
   void check_array_of_texts(TextBuckets& texts, const StoredColumn& column) const {
     std::vector<std::int64_t> shape = column.shape;
     bool filled = true;

@@ -24,7 +24,8 @@ struct Pair {
   std::complex<float> of_first, of_second;
 };
 
-/// From what correlations respond to: V_1 = S + c T and V_2 = S − c T give S = (V_1 + V_2)/2 and T = (V_1 − V_2)/(2c).
+/// The pairs from the responses of correlations: V_1 = S + c T and V_2 = S − c T give S = (V_1 + V_2)/2 and
+/// T = (V_1 − V_2)/(2c).
 std::vector<Pair> solved_pairs() {
   const std::array<std::array<Stokes, 2>, 4> hands = {
       {{Stokes::XX, Stokes::YY}, {Stokes::XY, Stokes::YX}, {Stokes::RR, Stokes::LL}, {Stokes::RL, Stokes::LR}}};
@@ -113,7 +114,7 @@ struct Unusable {
   }
 };
 
-/// One Stokes parameter of two correlations with real factors, in one loop: what most images are made of. Strides known to the
+/// Forms one Stokes parameter of two correlations with real factors, as for most images, in one loop. Strides known to the
 /// compiler, no branch, no alias and no bool in memory: that lets GCC vectorise it (with -fno-trapping-math). Floats come in
 /// pairs of real and imaginary part.
 template <std::size_t stride, std::size_t weight_stride, bool first_and_last>
@@ -146,7 +147,7 @@ void form_pair(const StokesRecipe& recipe, const float* __restrict data, const u
   unusable.add_to(counts, channels);
 }
 
-/// Whether form_pair can do it: shares that are 1, factors that are real.
+/// Whether form_pair can form a recipe: all shares are 1, and all factors are real.
 bool is_pair(const StokesRecipe& recipe) {
   return recipe.terms.size() == 1 && recipe.used.size() == 2 && recipe.share[0] == 1 && recipe.share[1] == 1 &&
          recipe.terms[0][0].imag() == 0 && recipe.terms[0][1].imag() == 0;
@@ -192,10 +193,10 @@ void form_either(const StokesRecipe& recipe, const StoredSamples& stored, const 
   unusable.add_to(counts, stored.channels);
 }
 
-/// Otherwise channels are dealt with so many at a time, in arrays that stay in the cache.
+/// Channels of other recipes are formed so many at a time, in arrays that stay in the cache.
 constexpr std::size_t at_once = 256;
 
-/// What the correlations in use say of some channels.
+/// The weights of some channels, from all correlations in use.
 struct Joined {
   float low[at_once];    ///< the lowest weight
   float sum[at_once];    ///< Σ share · lowest / weight
@@ -226,7 +227,7 @@ void join(const StokesRecipe& recipe, const float* data, const unsigned char* fl
       joined.sum[c] += recipe.share[i] * (joined.low[c] / weights[c * weight_stride + recipe.used[i]]);
 }
 
-/// Weighs some channels, those that are unusable with 0.
+/// Sets the weights of some channels, 0 for unusable ones.
 void weigh(const Joined& joined, std::size_t channels, float* weight, imager::SampleCounts& counts) {
   Unusable unusable;
   for (std::size_t c = 0; c < channels; ++c) {

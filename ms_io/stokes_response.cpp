@@ -26,14 +26,14 @@ constexpr std::array<StokesResponse, 13> responses = [] {
 
 using Plane = std::vector<std::complex<double>>;
 
-/// Null for a plane that is 0.
+/// A plane of the model; null for one that is 0.
 const Plane* given(const StokesVisibilities& model, int plane) {
   if (plane < 0) return nullptr;
   const Plane& values = model.plane[static_cast<std::size_t>(plane)];
   return values.empty() ? nullptr : &values;
 }
 
-/// Writes value(sample), or the data less that.
+/// Writes value(sample), or the data less value(sample).
 template <typename Value>
 void put(const CorrelationSamples& to, const Value& value) {
   for (std::size_t s = 0; s < to.count; ++s) {

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// casacore would wait for somebody to write into a pipe.
+/// Throws where a file of the table is no regular file: casacore would wait for somebody to write into a pipe.
 void check_files(const std::string& table) {
   std::error_code none;
   for (const fs::directory_entry& entry : fs::directory_iterator(table, none))
@@ -26,15 +26,14 @@ void check_files(const std::string& table) {
       throw std::runtime_error("cannot read " + entry.path().string() + ": it is no regular file");
 }
 
-/// Tables whose cells this project reads; casacore opens all subtables of a set, but reads of others only what they say of
-/// themselves.
+/// Whether this project reads cells of a subtable; casacore opens all subtables of a set, but reads only the headers of others.
 bool reads_cells_of(const std::string& subtable) {
   static const std::set<std::string> read{"ANTENNA",      "DATA_DESCRIPTION", "FEED", "FIELD", "OBSERVATION",
                                           "POLARIZATION", "SPECTRAL_WINDOW",  "STATE"};
   return read.count(fs::path(subtable).filename()) > 0;
 }
 
-/// Which casacore finds by their names, in the folder of FIELD.
+/// The tables of ephemerides, which casacore finds by their names, in the folder of FIELD.
 std::vector<std::string> ephemerides(const std::string& table) {
   std::vector<std::string> found;
   std::error_code none;

@@ -60,7 +60,7 @@ class RecordReader {
     return fields;
   }
 
-  /// One whose first length is negative may be any.
+  /// Reads a shape. A shape whose first length is negative stands for any.
   void read_shape(DataType type) {
     const std::vector<std::int64_t> shape = in_.lengths();
     if (!shape.empty() && shape.front() >= 0) check_values(in_, shape, type);
@@ -82,7 +82,7 @@ class RecordReader {
         skip_value(in_, field.type);
   }
 
-  /// Of a hypercolumn, for each of which casacore takes memory.
+  /// Reads the axes of a hypercolumn, for each of which casacore takes memory.
   void read_axes(std::size_t size) {
     constexpr std::uint64_t most = 1 << 16;
     if (const std::uint64_t axes = in_.number(size); axes > most)

@@ -15,7 +15,7 @@ struct Record {
   std::vector<Witness> witnesses;
 };
 
-/// Of a file that is whole.
+/// The record in a file that is whole.
 Record record_in(std::istream& text) {
   Record record;
   std::string line, key;

@@ -99,7 +99,7 @@ class TiledHeader {
       bytes_.fail(shown(tiles) + " tiles", "no more than their file holds");
   }
 
-  /// That cells are of the shape that their column says they have. Of TiledDataStMan, those of one axis may be coordinates.
+  /// Checks that cells have the shape that their column states. For TiledDataStMan, cells of one axis may be coordinates.
   void check_shapes(std::vector<std::int64_t> cube) const {
     if (cube.size() != axes_)
       bytes_.fail("a hypercube of " + std::to_string(cube.size()) + " axes", std::to_string(axes_) + " as of all");
@@ -111,7 +111,7 @@ class TiledHeader {
     }
   }
 
-  /// That there are as many as casacore looks for, and no rows beyond the table's.
+  /// Checks that there are as many hypercubes as casacore looks for, and no rows beyond the table's.
   void check_cubes() const {
     const std::uint64_t fewest = manager_ == "TiledCellStMan" ? rows_ : manager_ == "TiledDataStMan" ? 0 : 1;
     if (cubes_.size() < fewest) bytes_.fail(std::to_string(cubes_.size()) + " hypercubes", std::to_string(fewest) + " or more");
@@ -121,7 +121,7 @@ class TiledHeader {
         bytes_.fail("a hypercube of " + std::to_string(cube.rows) + " rows", "the table's " + std::to_string(rows_));
   }
 
-  /// They tell hypercubes of TiledDataStMan apart; others have none.
+  /// Checks the values that tell hypercubes of TiledDataStMan apart; others have none.
   void check_values() {
     if (manager_ == "TiledDataStMan") {
       read_record(in_);
@@ -143,7 +143,7 @@ class TiledHeader {
                 "some of its " + std::to_string(cube.rows));
   }
 
-  /// Of TiledShapeStMan: runs of rows, by the last of each and where that lies.
+  /// Checks the runs of rows of TiledShapeStMan: the last row of each, and where it lies.
   void check_rows() {
     in_.lengths();
     const std::uint64_t used = in_.number(4);
@@ -158,8 +158,8 @@ class TiledHeader {
     }
   }
 
-  /// Of TiledDataStMan: chunks, by the first row of each and where that lies; several rows may share a place along the last
-  /// axis.
+  /// Checks the chunks of TiledDataStMan: the first row of each, and where it lies; several rows may share a place along the
+  /// last axis.
   void check_chunks(std::uint64_t version) {
     const std::uint64_t rows = in_.number(version == 1 && common_version_ < 3 ? 4 : 8);
     if (version == 1) in_.number(4);

@@ -12,7 +12,7 @@ namespace {
 /// Rows read at once: many, since so little of each is.
 constexpr std::uint64_t piece_rows = 1 << 16;
 
-/// Reads where rows lie, and whether they can be used.
+/// Reads the UVW of rows, and whether they can be used.
 class UvwScan {
  public:
   explicit UvwScan(const casacore::Table& table)
@@ -53,7 +53,7 @@ class UvwScan {
   casacore::Array<double> uvw_;                ///< [row][3]
 };
 
-/// Calls visit(setup, coordinates) for some of the rows that are wanted after others, as the image's phase centre sees them.
+/// Calls visit(setup, coordinates) for groups of the wanted rows, with UVW about the image's phase centre.
 template <typename Visit>
 void scan(const OpenSet& open_set, ReachOf wanted, const Visit& visit) {
   imager::SampleCoordinates some;

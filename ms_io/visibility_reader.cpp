@@ -66,14 +66,14 @@ class GrowingBlock {
     }
   }
 
-  /// The block as the phase centre of the image sees it.
+  /// The block, shifted to the phase centre of the image.
   std::shared_ptr<const imager::VisibilityBlock> finish() {
     shifts_.apply(*block_);
     return block_;
   }
 
  private:
-  /// Appends what `count` rows from `first` on have, where rows have any.
+  /// Appends the values of `count` rows from `first` on, where rows have any.
   template <typename T>
   static void append_some(const std::vector<T>& of_rows, std::size_t first, std::size_t count, std::vector<T>& to) {
     if (of_rows.empty()) return;
@@ -98,7 +98,7 @@ class GrowingBlock {
     }
   }
 
-  /// One row, a run of selected channels at a time.
+  /// Forms one row, a run of selected channels at a time.
   void form_row(const StoredSamples& row) {
     imager::SampleCounts uncounted;
     for (const auto& [run, counted] : runs_) {
@@ -151,7 +151,7 @@ class Reader : public imager::BlockStream {
   }
 
  private:
-  /// While this thread reads, which casacore allows to one alone, another makes the blocks and fills them.
+  /// Reads a group. While this thread reads, as casacore allows one thread only, another makes the blocks and fills them.
   void read_group() {
     const SelectedRows& selected = source_->selected;
     const BlockGroup group = block_group(selected, next_);
@@ -177,7 +177,7 @@ class Reader : public imager::BlockStream {
     }
   }
 
-  /// In the rows of a piece that can be used, which belong to blocks from `group` on.
+  /// Looks for data in the usable rows of a piece, which belong to blocks from `group` on.
   void look_for_data(std::vector<BlockRows>::const_iterator group, const Rows& piece, const std::uint16_t* owner,
                      const StoredRows& stored) {
     translated("cannot read FIELD_ID of " + source_->path,
