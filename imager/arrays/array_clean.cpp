@@ -45,7 +45,7 @@ CleanState state_of(const ArrayCleanOptions& options, const std::vector<double>&
   return first_state(model);
 }
 
-/// What CLEAN is to begin with.
+/// The images that CLEAN begins with.
 struct Dirty {
   AccurateImages made;
   Beam beam;
@@ -61,7 +61,7 @@ Dirty dirty_images(const VisibilitySource& source, GriddingPlan plan, double cel
   return dirty;
 }
 
-/// All blocks, kept for the major cycles to come.
+/// All blocks, kept for the major cycles.
 template <typename Real>
 StoredVisibilities stored(const ArrayCoordinates& at, const ArrayValues<Real>& values, const ArrayBlockOptions& blocks_of) {
   const ArraySource<Real> source(at, values, blocks_of);

@@ -36,13 +36,13 @@ bool all_masked(const ArrayCoordinates& at, std::size_t row) {
   return true;
 }
 
-/// Keeps the least of the rows that threads complain about.
+/// Keeps the lowest row with an error among threads.
 void keep_least(std::atomic<std::size_t>& least, std::size_t row) {
   for (std::size_t seen = least; row < seen && !least.compare_exchange_weak(seen, row);) {
   }
 }
 
-/// Whether all weights of the rows can be a block's: single ones, and none negative.
+/// Whether a block can hold all weights of the rows: in single precision, and none negative.
 bool fits_block(const Strided<const double>& weight, RowsOfArray, int) {
   return !weight;
 }

@@ -10,12 +10,12 @@
 namespace misfit::imager {
 namespace {
 
-/// Whether single precision holds it.
+/// Whether single precision holds a value.
 bool is_single(double value) {
   return std::abs(value) <= std::numeric_limits<float>::max();
 }
 
-/// Fills in a row's values and weights where the mask lets it; false where one cannot be meant.
+/// Fills in a row's values and weights where the mask allows; false where one of them is invalid.
 template <typename Real>
 bool set_row(const ArrayValues<Real>& values, std::size_t row, std::size_t first, VisibilityBlock& block) {
   bool good = true;

@@ -15,7 +15,7 @@
 namespace misfit::imager {
 namespace {
 
-/// The image as a block's (u, v) = (v, −u) see it: rows along x, columns along −l = y.
+/// The image for a block whose (u, v) are the array's (v, −u): rows along x, columns along −l = y.
 ImageGeometry geometry_of(const ArrayImage& image) {
   constexpr int most = 65536;
   for (const int pixels : {image.pixels_x, image.pixels_y})
@@ -36,7 +36,8 @@ ImageGeometry geometry_of(const ArrayImage& image) {
   return geometry;
 }
 
-/// Without w there is no horizon: the factor, a power of 2, by which an image is made so small that it has none either.
+/// The factor, a power of 2, by which an image without w is made so small that it does not reach the horizon, which does not
+/// exist without w.
 double shrinking(const ImageGeometry& geometry) {
   double reach = 0;
   for (const DirectionCosines corner : geometry.corners()) reach = std::max({reach, std::abs(corner.l), std::abs(corner.m)});
@@ -47,7 +48,7 @@ int threads_of(const ArrayTransformOptions& options) {
   return options.threads > 0 ? options.threads : available_threads();
 }
 
-/// Whether double precision holds the phases of u and v that the farthest samples have at the farthest pixels.
+/// Throws where double precision does not hold the phases of u and v of the farthest samples at the farthest pixels.
 void check_phases(const ImageGeometry& geometry, const UvwReach& reach, const ArrayTransformOptions& options) {
   double turns = 0;
   const double scale = options.image.pixel_y_rad / geometry.cell_rad;
@@ -109,7 +110,7 @@ double expected_error_of(const GriddingPlan& plan, const SampleSums& sums, const
   return rms == 0 ? (random == 0 ? 0 : HUGE_VAL) : plan.expected_error * std::max(1.0, random / rms);
 }
 
-/// Blocks that are predicted together, and the rows that they are.
+/// Blocks that are predicted together, and their rows.
 struct Gathered {
   std::vector<VisibilityBlock> block;
   std::vector<RowsOfArray> rows;

@@ -46,7 +46,7 @@ struct Normal {
   }
 };
 
-/// The FWHM in units of the lobe's scale beyond which pixels tell no width: ten times the image's size.
+/// The FWHM, in units of the lobe's scale, beyond which pixels do not define a width: ten times the image's size.
 double widest(const Image& psf, const MainLobe& lobe) {
   return 10 * std::max(psf.width, psf.height) / lobe.scale;
 }

@@ -31,7 +31,7 @@ Beam beam_of(const Matrix& ellipse) {
   return beam;
 }
 
-/// The point of any of the ellipses that lies farthest outside of another, and (x/r)² of it.
+/// The point of any of the ellipses that lies farthest outside another ellipse, and its (x/r)².
 struct Farthest {
   Vector point;
   double square = 0;

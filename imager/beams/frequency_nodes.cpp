@@ -10,7 +10,7 @@
 namespace misfit::imager {
 namespace {
 
-/// Frequencies of which some that follow one another are looked at, with the values at each.
+/// Frequencies with the values at each, of which ranges are looked at.
 struct Known {
   std::vector<double> hz;
   std::vector<std::vector<double>> values;
@@ -53,7 +53,8 @@ bool is_true(const FrequencySpan& span, const Known& known, Part part, const Val
   return true;
 }
 
-/// The span of a part with the fewest nodes that do; with none where that takes too many, but for two frequencies or one.
+/// The span of a part with the fewest nodes that are enough; without nodes where that takes too many, except for two
+/// frequencies or one.
 FrequencySpan span_of(const Known& known, Part part, const ValuesAtFrequency& values, double tolerance) {
   FrequencySpan span{known.hz[part.begin], known.hz[part.end - 1], {}};
   for (std::size_t nodes = 1; nodes <= known.most_nodes && nodes < part.count(); ++nodes) {

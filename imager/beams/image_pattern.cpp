@@ -62,7 +62,7 @@ class ImagePattern : public VoltagePattern {
     return std::sqrt(sum / angles);
   }
 
-  /// As far as there are pixels in all directions.
+  /// sin θ up to which there are pixels in all directions.
   double main_lobe_sine(double frequency_hz) const override {
     double lowest_hz = grid_.planes.front().frequency_hz;
     for (const PatternGrid::Plane& plane : grid_.planes)
@@ -82,7 +82,7 @@ class ImagePattern : public VoltagePattern {
   double detail_sine(double frequency_hz) const override { return main_lobe_sine(frequency_hz) / 16; }
 
  private:
-  /// 0 beyond the pixels; at their rim polynomials of the last four.
+  /// The voltage between pixels: 0 beyond them; at their rim by polynomials of the last four.
   double pixel(const PatternGrid::Plane& plane, double column, double row) const {
     if (!(column >= 0 && column <= grid_.width - 1 && row >= 0 && row <= grid_.height - 1)) return 0;
     const int c = std::clamp(static_cast<int>(column), 1, grid_.width - 3),

@@ -41,7 +41,8 @@ MainLobe connected_samples(const Image& psf, int per_pixel) {
   return lobe;
 }
 
-/// [pixel][sample]: what a pixel adds to each sample, for pixels up to `half` and samples up to `reach` pixels from the centre.
+/// [pixel][sample]: the part of a pixel in each sample, for pixels up to `half` and samples up to `reach` pixels from the
+/// centre.
 Eigen::MatrixXd sinc_matrix(int half, int reach) {
   const int last = reach * samples_per_pixel;
   return Eigen::MatrixXd::NullaryExpr(2 * half + 1, 2 * last + 1, [&](Eigen::Index pixel, Eigen::Index sample) {

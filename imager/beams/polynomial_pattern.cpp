@@ -38,7 +38,7 @@ class PolynomialPattern : public VoltagePattern {
   }
 
  private:
-  /// Two fits of a band, of which the other counts by this part.
+  /// Two fits of a band, and the weight of the second.
   struct Fits {
     std::size_t band, one, other;
     double part;
@@ -61,7 +61,7 @@ class PolynomialPattern : public VoltagePattern {
     return x <= ends_[band][fit] ? std::sqrt(power(beams_.bands[band].fits[fit], x)) : 0;
   }
 
-  /// By what factor a frequency lies outside a band; 1 within it.
+  /// The factor by which a frequency lies outside a band; 1 within it.
   static double away(const FittedBand& band, double frequency_hz) {
     return std::max({1.0, band.low_hz / frequency_hz, frequency_hz / band.high_hz});
   }

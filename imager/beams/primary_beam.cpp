@@ -28,8 +28,8 @@ void check(const BeamShare& share) {
     throw std::invalid_argument("share of a primary beam with weight " + std::to_string(share.weight) + "; expected 0 or more");
 }
 
-/// Shares of the same patterns, turned alike to a degree, at nearly the same frequency, less than `apart` of it, as one, with
-/// weights that add up to 1; in the order in which they come first.
+/// Joins shares of the same patterns, turned alike to a degree, at frequencies less than `apart` of themselves from each other,
+/// with weights that add up to 1; in the order of the first of each.
 std::vector<BeamShare> taken_together(const std::vector<BeamShare>& shares, double apart) {
   constexpr double turn_step = pi / 180;
   using Key = std::tuple<const VoltagePattern*, const VoltagePattern*, long, long>;

@@ -34,7 +34,7 @@ constexpr char formed_beams[] =
     "the "
     "ones to correct by";
 
-/// One object a beam: pairs of dishes whose patterns are one are alike.
+/// The known beams, one object for each: pairs of dishes with the same pattern objects are alike.
 const std::vector<KnownBeam>& known_beams() {
   static const std::vector<KnownBeam> beams = [] {
     const Pattern of_vla = polynomial_pattern(vla_beams()), of_12_m = airy_pattern({10.7, 0.75}),
@@ -68,7 +68,7 @@ const std::vector<KnownBeam>& known_beams() {
   return beams;
 }
 
-/// Beginnings of the names of telescopes whose antennas have no such beam.
+/// Beginnings of the names of telescopes whose antennas have no simple beam.
 struct Beamless {
   const char* telescope;
   const char* reason;

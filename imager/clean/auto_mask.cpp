@@ -24,7 +24,7 @@ struct Pieces {
   int dropped = 0;
 };
 
-/// Takes out what is connected over fewer pixels.
+/// Removes connected pieces of fewer pixels.
 Pieces drop_small(double fewest_pixels, Region& region) {
   Pieces pieces;
   std::vector<char> seen(region.in.size());
@@ -101,7 +101,7 @@ class Extension {
     return region;
   }
 
-  /// Grows the mask so far, without what absorption made.
+  /// Grows the mask so far, without the part that absorption made.
   Region grown(Region region) {
     const Region faint = above(residual_, low_, scene_.threads);
     grow(faint, o_.grow_iterations, region);

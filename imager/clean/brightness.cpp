@@ -17,7 +17,7 @@ class BrightnessCount {
   void add(const BrightnessCount& o) {
     for (std::size_t i = 0; i < count_.size(); ++i) count_[i] += o.count_[i];
   }
-  /// The lowest brightness that no more than `most` exceed; a top step that holds too many by itself is taken whole.
+  /// The lowest brightness that no more than `most` places exceed; a top step that holds too many by itself is taken whole.
   double level_of(std::size_t most) const {
     std::size_t step = steps, above = 0;
     while (step > 0 && above + count_[step - 1] <= most) above += count_[--step];

@@ -36,7 +36,7 @@ double largest_sidelobe(const Image& psf, const Image& beam) {
   return largest;
 }
 
-/// Without the beam where that is below 1e-8.
+/// The beam counts as 0 where it is below 1e-8.
 double largest_sidelobe(const Image& psf, const Beam& beam, double cell_rad, int threads) {
   const int reach = static_cast<int>(std::ceil(2.6 * beam.major_rad / cell_rad)) + 1;
   const int row = psf.height / 2, column = psf.width / 2;

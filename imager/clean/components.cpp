@@ -43,7 +43,7 @@ struct GaussianTerm {
   std::vector<double> taps;
 };
 
-/// Adds those of components, which are in the order of rows, to an image.
+/// Adds the Gaussians of components, which are in the order of rows, to an image.
 template <typename Iterator>
 void add_gaussians(Iterator begin, Iterator end, const GaussianTerm& of, int threads, Image& image) {
   const std::vector<double>& taps = of.taps;

@@ -18,9 +18,9 @@ std::string in_jy(double value) {
   return text;
 }
 
-/// With w sidelobes far from the phase centre differ from the PSF's: those of many sources leave no more than if none were
-/// taken off at all, those of one no more than the largest that lie far from it. Without w it is those beyond half the image
-/// alone that the PSF lacks: they resemble the last that it has.
+/// With w, sidelobes of sources far from the phase centre differ from the PSF's: those of many sources leave no more than if
+/// none were taken off at all, and those of one source no more than the largest far sidelobes. Without w the PSF lacks only
+/// sidelobes beyond half the image, which resemble the last ones that it has.
 DoubtfulSidelobes doubtful_sidelobes(const CleanInput& input, double psf_rms, double cycle_factor) {
   constexpr double deviations = 6, far = 0.25, last = 0.375;
   const FarSidelobes sidelobes = far_sidelobes(*input.psf.front(), input.same_sidelobes ? last : far);

@@ -11,7 +11,7 @@
 namespace misfit::imager {
 namespace {
 
-/// Bright places, as bright as this and brighter, and what becomes of them.
+/// The bright places, all from a level on, and the components found among them.
 struct InView {
   BrightPlaces& bright;
   double level;
@@ -21,8 +21,8 @@ struct InView {
   bool points_are_below(double jy) const { return level <= jy / unit_jy && bright.point_brightness() <= jy / unit_jy; }
 };
 
-/// Finds components among bright places until points are as deep as they are to go, or no place is brighter than `lowest`, or
-/// others may have become as bright.
+/// Finds components among bright places until points have reached their depth, or no place is brighter than `lowest`, or other
+/// places may have become as bright.
 void find_among(const InView& view, const ScaledPsf& psf, const MinorCycleOptions& o, double lowest, MinorCycleWatch& watch,
                 MinorCycleReport& report) {
   constexpr double bearable = 0.2;

@@ -91,13 +91,13 @@ class Run {
     keep(std::move(start));
   }
 
-  /// From here on no coarser transforms are taken, and what they had left does not count against CLEAN.
+  /// From here on no coarser transforms are taken, and their residuals do not count against CLEAN.
   void stay_exact() {
     if (state_.exact_from == 0) state_.exact_from = state_.cycles.size();
     state_.tightened = 0;
   }
 
-  /// Makes the residual, and what was measured of it, as exact as any.
+  /// Makes the residual, and its measurements, as exact as any.
   void make_exact() {
     MajorCycle& cycle = state_.cycles[state_.now];
     if (cycle.accuracy == exact) return;
@@ -113,12 +113,12 @@ class Run {
     return found == coarser.end() ? -1 : static_cast<int>(found - coarser.begin());
   }
 
-  /// True while no residual was made and the model is that which the dirty images are of.
+  /// True while no residual was made, and the dirty images are the residuals of the model.
   bool begins_with_dirty() const {
     return residuals_.empty() && (input_.of_start || (state_.model.components().empty() && state_.cycles.size() <= 1));
   }
 
-  /// Returns with which accuracy.
+  /// Makes the residual, and returns its accuracy.
   double make_residual(double accuracy) {
     const bool dirty = begins_with_dirty() && accuracy >= input_.dirty_accuracy;
     residuals_.clear();
@@ -146,17 +146,17 @@ class Run {
     for (int term = 0; term < input_.expansion.terms; ++term) images.push_back(state_.model.image(o_.threads, term));
     return images;
   }
-  /// Of the first term, whose units and noise the thresholds are of.
+  /// The residual of the first term, to whose units and noise thresholds refer.
   const Image& residual() const { return residuals_.front(); }
 
   bool mask_is_empty() const { return mask() != nullptr && imager::mask_is_empty(*mask()); }
-  /// Of the whole image where the mask is empty.
+  /// The peak within the mask; of the whole image where the mask is empty.
   double peak_within_mask() const {
     const bool everywhere = mask() == nullptr || mask_is_empty();
     return everywhere ? statistics_.largest_magnitude() : largest_magnitude_within(*mask(), residual(), o_.threads);
   }
 
-  /// What the residual is now.
+  /// Measures the present residual.
   void measure(MajorCycle& cycle) {
     const StageTimer timer(context_.times, stage::statistics);
     cycle.rms_jy = robust_noise(residual(), o_.threads);
@@ -258,7 +258,7 @@ class Run {
     return "";
   }
 
-  /// The first time it may be coarser transforms that misled CLEAN; after that its minor cycles go too deep.
+  /// Takes a cycle back. The first time coarser transforms may have misled CLEAN; after that its minor cycles go too deep.
   void take_back(MajorCycle cycle) {
     cycle.ended += "; the residual grew, taken back";
     state_.cycles.push_back(std::move(cycle));

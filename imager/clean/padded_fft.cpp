@@ -58,7 +58,7 @@ class Columns {
   typename Fft<Real>::ComplexBuffer column_[most];
 };
 
-/// By hand: operator* would look for infinities.
+/// The product by hand: operator* would look for infinities.
 template <typename Real>
 std::complex<Real> product(std::complex<Real> a, std::complex<Real> b) {
   return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};

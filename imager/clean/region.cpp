@@ -7,7 +7,7 @@ namespace misfit::imager {
 namespace {
 
 /// A region ⊗ beam, near the region. Runs of pixels have fewer ends than pixels: along rows, the beam is added where a run
-/// begins, and taken off behind its end; what comes of it, added up along rows, is the region ⊗ beam but for rounding.
+/// begins, and taken off behind its end; the running sum along rows is then the region ⊗ beam, up to rounding.
 class Smoothing {
  public:
   /// `stamp` is the beam about its middle, of as many rows as columns, an odd number.
@@ -37,7 +37,7 @@ class Smoothing {
   }
 
  private:
-  /// Columns from `begin` to before `end`.
+  /// Columns [begin, end).
   struct Run {
     int begin = 0;
     int end = 0;
@@ -105,7 +105,7 @@ class Smoothing {
   std::vector<Row> rows_;
 };
 
-/// A beam about its middle, as far as convolve_with_beam() has any.
+/// A beam about its middle, as far as convolve_with_beam() takes it.
 Image stamp(const Beam& beam, double cell_rad, int threads) {
   constexpr double reach = 3;  // full widths at half maximum
   const int pixels = static_cast<int>(std::ceil(reach * beam.major_rad / cell_rad));

@@ -59,7 +59,8 @@ MeritForm merit_form(const TaylorBasis& basis, double bias) {
   return form;
 }
 
-/// Where the next ring of tiles changes little: beyond the main lobes of two components of the largest scale.
+/// The number of tiles beyond which another ring of tiles changes little: beyond the main lobes of two components of the
+/// largest scale.
 int near_tiles_of(double largest_scale_pixels) {
   constexpr int least = 4, most = 8;
   return std::clamp(static_cast<int>(std::ceil(2.75 * std::sqrt(2.0) * largest_scale_pixels / bright_tile_side)), least, most);

@@ -34,7 +34,7 @@ std::vector<float> transform_of(double fwhm_pixels, int n) {
   return result;
 }
 
-/// A power of two, so that it rounds nothing.
+/// The unit of a residual: a power of two, so that it rounds nothing.
 double unit_of(const Image& residual, int threads) {
   const double peak = statistics_of(residual, threads).largest_magnitude();
   return peak > 0 ? std::ldexp(1.0, std::ilogb(peak)) : 1;
@@ -118,8 +118,8 @@ void ScaledResidual::load(std::size_t term, const Image& residual) {
                   [&](int row, const float* pixels) { std::copy_n(pixels, plane_[s].width, plane_[s].row(term, row)); });
 }
 
-/// Gaussians need nine tenths of themselves on pixels that are allowed, and two of their widths within the image: beyond that
-/// lies a millionth.
+/// Forbids Gaussians that have less than nine tenths of themselves on allowed pixels, or less than two of their widths within
+/// the image: beyond these lies a millionth.
 void ScaledResidual::forbid(const std::vector<const Image*>& residual, const Image* mask) {
   constexpr float enough = 0.9F;
   const auto is_allowed = [&](int row, int column) {

@@ -8,7 +8,7 @@
 namespace misfit::imager {
 namespace {
 
-/// What precedes the scales and components of a model.
+/// The message before the scales and components of a model.
 struct Announcement {
   bool end = false;
   int width = 0;

@@ -19,7 +19,7 @@ constexpr int most_in_crowded_buffer = 1024;
 template <typename Real>
 class CoplanarAdjoint : public AdjointSum {
  public:
-  /// Of so many images for each set of visibilities: more than one where samples have shares in them.
+  /// Makes `of_each` images for each set of visibilities: more than one where samples have shares in them.
   CoplanarAdjoint(const CoplanarSetup<Real>& setup, const AdjointOptions& options, std::size_t of_each = 1)
       : AdjointSum(options), setup_(setup), seen_(setup.geometry), of_each_(of_each), value_unit_(images()), sums_(sets()) {
     if (images() == 0) seen_.centre = {};
@@ -51,7 +51,7 @@ class CoplanarAdjoint : public AdjointSum {
         flush({static_cast<int>(tile % tiles_u), static_cast<int>(tile / tiles_u), tile}, *sum);
   }
 
-  /// Makes one of the images of a set, which leaves nothing of its grid. All crowded tiles have to be flushed before.
+  /// Makes one of the images of a set, which destroys its grid. All crowded tiles have to be flushed before.
   Image image_of(std::size_t set, std::size_t image) {
     const std::size_t plane = 2 * (set * of_each_ + image);
     return to_image(std::move(grid_[plane]), std::move(grid_[plane + 1]), value_unit_[set].unit());

@@ -33,7 +33,7 @@ class GriddedImages {
 
   double fft_s() const { return fft_s_; }
 
-  /// V of the one image, or with shares of all.
+  /// V of the one image, or, with shares, of all images.
   std::vector<std::complex<double>> degrid(const VisibilityBlock& block, Wanted wanted, const SampleShares* shares) const {
     const TileOrder order = order_by_tile(block, {}, setup_.shape, setup_.geometry, wanted, setup_.threads);
     std::vector<std::complex<double>> visibility(block.samples());

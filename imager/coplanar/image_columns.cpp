@@ -43,7 +43,7 @@ void load_spectra(const KeptColumns<Real>& kept, int first, ColumnBuffers<Real>&
   });
 }
 
-/// The other way round.
+/// Brings spectra back to kept columns from `first` on.
 template <typename Real>
 void store_spectra(const ColumnBuffers<Real>& buffers, int first, const KeptColumns<Real>& kept) {
   const std::size_t columns = buffers.spectrum.size();
@@ -58,7 +58,7 @@ void store_spectra(const ColumnBuffers<Real>& buffers, int first, const KeptColu
   });
 }
 
-/// Values of a transform of length n, put in the order of `pixels` around the first of them; upside down as y ↦ −y has it.
+/// Puts the values of a transform of length n in the order of `pixels` about its first value; upside down for y ↦ −y.
 template <typename Real>
 void order_pixels(const Real* transformed, int n, int pixels, bool upside_down, Real* out) {
   const int before = pixels / 2, after = pixels - before - 1;

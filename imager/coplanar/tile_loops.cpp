@@ -42,7 +42,7 @@ SameCell next_cell(const TileBatch<Real>& samples, int begin) {
   return {begin, end};
 }
 
-/// Some planes of a tile, and what the samples of a batch have for them.
+/// Some planes of a tile, and the values of a batch's samples for them.
 template <typename Real, int Planes>
 struct SomePlanes {
   const Real* value[Planes];  ///< [sample]

@@ -18,8 +18,8 @@ struct TiledRun {
   SampleRun run;
 };
 
-/// Which tile a sample's first tap falls into. What does not change from sample to sample is worked out beforehand: divisions
-/// of integers would take longer than all the rest.
+/// Finds the tile that a sample's first tap falls into. Values that are the same for all samples are worked out beforehand:
+/// divisions of integers would take longer than all the rest.
 class TileFinder {
  public:
   explicit TileFinder(const GridShape& shape)
@@ -109,7 +109,7 @@ class RunFinder {
     return end;
   }
 
-  /// Of one channel.
+  /// Finds the runs of rows of one channel.
   void find_among_rows(std::size_t begin_row, std::size_t end_row) {
     const double frequency = block_.frequency_hz.front();
     for (std::size_t row = begin_row; row < end_row;) {

@@ -60,7 +60,7 @@ class Ladder {
   std::pair<double, double> reach_hz() const { return {frequency_hz_.front() - widest_hz_, frequency_hz_.back() + widest_hz_}; }
   std::size_t size() const { return index_.size(); }
   std::size_t channel(std::size_t step) const { return index_[step]; }
-  /// Of the channels that reach into a range; nothing where none does.
+  /// The mean width of the channels that reach into a range; nothing where none does.
   std::optional<double> mean_width_hz(double low_hz, double high_hz) const {
     double sum = 0;
     int count = 0;

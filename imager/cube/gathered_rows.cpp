@@ -9,7 +9,7 @@
 namespace misfit::imager {
 namespace {
 
-/// Of an interpolated visibility; 0 where a sample that it needs is unusable.
+/// The weight of an interpolated visibility; 0 where a sample that it needs is unusable.
 float weight_of(const float* row_weight, const ChannelTap& tap) {
   const double one = row_weight[tap.channel];
   if (tap.part == 0) return row_weight[tap.channel];

@@ -14,7 +14,7 @@ namespace {
 /// Rows that are dealt out to all planes before the next ones: few enough to stay in the cache.
 constexpr std::size_t rows_dealt_at_once = 256;
 
-/// Of a window: fewer where a plane takes several channels.
+/// The rows that are gridded together, for a window: fewer where a plane takes several channels.
 std::size_t rows_at_once_of(const CubeSampling& sampling, const std::vector<double>& channel_width_hz) {
   constexpr auto rows = static_cast<double>(samples_gathered_at_once);
   const SpectralAxis& axis = sampling.axis;
@@ -104,7 +104,7 @@ std::vector<std::unique_ptr<GatheredRows>> PlaneGatherer::take(bool all) {
 
 void PlaneGatherer::count_outside(const VisibilityBlock& block, const std::vector<MappedRows>& rows) {
   const double low = -0.5, high = sampling_.axis.channels - 0.5;
-  // Ranges of planes share channels: those below all planes are the first one's to count, those above the last one's.
+  // Ranges of planes share channels: the first range counts those below all planes, the last range those above.
   const bool first = range_.first == 0, last = range_.first + range_.count == sampling_.axis.channels;
   for (const MappedRows& some : rows) {
     const double ratio = block.frame_ratio.empty() ? 1 : block.frame_ratio[some.first];

@@ -31,7 +31,7 @@ struct Placed {
   std::uint32_t row;
 };
 
-/// Sorts by 16 bits of the distance, those of the same bits as they were.
+/// Sorts by 16 bits of the distance, stably.
 void sort_by_bits(const std::vector<Placed>& from, int shift, std::vector<Placed>& to) {
   std::vector<std::uint32_t> next(side + 1);
   for (const Placed& one : from) ++next[((one.distance >> shift) & (side - 1)) + 1];

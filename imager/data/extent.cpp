@@ -25,7 +25,7 @@ void WSpread::add(const VisibilityBlock& block) {
   }
 }
 
-/// Of one channel, in lanes, so that no addition waits for the one before.
+/// Adds rows of one channel, in lanes, so that no addition waits for the one before.
 void WSpread::add_rows(const VisibilityBlock& block) {
   constexpr std::size_t lanes = 4;
   double sum[lanes] = {}, sum_w_square[lanes] = {};

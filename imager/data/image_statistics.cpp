@@ -22,7 +22,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Doubles = hn::ScalableTag<double>;
 using Vector = hn::Vec<Doubles>;
 
-/// Of some of the pixels, in lanes.
+/// Sums over some of the pixels, in lanes.
 struct Sums {
   Vector square, count, least, largest;
 
@@ -58,7 +58,8 @@ struct Sums {
   }
 };
 
-/// Of an array, divided first where it is not constant; two vectors at a time, so that no addition waits for the one before.
+/// The statistics of an array, which is divided first unless its type is constant; two vectors at a time, so that no addition
+/// waits for the one before.
 template <typename Pixel>
 HWY_ATTR HWY_INLINE ImageStatistics look_at(Pixel* pixel, std::size_t count, double by) {
   const Doubles d;

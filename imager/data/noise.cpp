@@ -27,7 +27,7 @@ struct Bracket {
   std::size_t all = 0;
   std::vector<double> within;
 
-  /// Without branches: which values lie within is as random as they are.
+  /// Counts values without branches, since which values lie within is random.
   template <typename ValueOf>
   void look(const double* pixel, std::size_t count, const ValueOf& value_of) {
     constexpr std::size_t together = 1024;

@@ -15,7 +15,7 @@
 namespace misfit::imager {
 namespace {
 
-/// The same as `at` seen from `origin`: phases subtract.
+/// The position `at` as seen from `origin`: phases subtract.
 PhasePosition relative(const PhasePosition& at, const PhasePosition& origin) {
   return {at.l - origin.l, at.m - origin.m, at.n_minus_1 - origin.n_minus_1};
 }
@@ -94,7 +94,7 @@ struct WeightedSamples {
   Sums images_at(const PhasePosition& to) const {
     return images_at(to, [](Phasors&) {});
   }
-  /// Σ w B Re[V exp(−2πi(…))], with what a pixel is seen to.
+  /// Σ w B Re[V exp(−2πi(…))], with the response B to a pixel.
   Sums images_at(const PhasePosition& to, const BlockResponse& response, std::size_t pixel) const {
     return images_at(to, [&](Phasors& p) {
       for (std::size_t i = 0; i < p.count; ++i) {
@@ -119,7 +119,7 @@ struct WeightedSamples {
     });
     return sums;
   }
-  /// The same for V = 1.
+  /// Σ w Re[exp(−2πi(…))], which is images_at() for V = 1.
   double beam_at(const PhasePosition& to) const {
     double sum = 0;
     for_phasors(at, to, [&](const Phasors& p) {

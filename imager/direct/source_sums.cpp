@@ -54,7 +54,7 @@ class OrderedChannels {
   std::size_t channel(std::size_t place) const { return channel_[place]; }
 
  private:
-  /// The longest run that differs from the frequencies by no more than what rounding makes of such.
+  /// The longest evenly spaced run that differs from the frequencies by no more than rounding.
   Run longest_from(std::size_t begin) const {
     Run run;
     run.begin = begin;
@@ -119,7 +119,7 @@ class SourceSums {
     return group;
   }
 
-  /// So many sources at a time that caches hold them for all groups.
+  /// Adds so many sources at a time that caches hold them for all groups.
   template <typename Add>
   static void add(const Add& add_some, const SourceArrays& sources, const std::vector<RowGroup>& groups,
                   const EvenChannels& channels, std::vector<GroupSums>& sums) {
@@ -134,7 +134,7 @@ class SourceSums {
   OrderedChannels order_;
 };
 
-/// As if α were 0.
+/// Predicts as if α were 0.
 std::vector<std::complex<double>> predict_flat(const std::vector<Source>& sources, const SampleCoordinates& at, int threads,
                                                bool with_w) {
   std::vector<std::complex<double>> visibility(at.samples());

@@ -22,8 +22,8 @@ std::vector<std::uint64_t> random_samples(std::uint64_t samples, int count, std:
 /// Chosen samples, a row each, of each frequency.
 using ChosenSamples = std::map<double, SampleCoordinates>;
 
-/// Adds the coordinates of the chosen samples that lie in `block`, whose first sample has index `first`; of usable ones alone:
-/// others may lie where nothing was planned for.
+/// Adds the coordinates of the chosen samples that lie in `block`, whose first sample has index `first`; of usable samples
+/// alone: others may lie beyond what was planned for.
 void collect(const VisibilityBlock& block, std::uint64_t first, const std::vector<std::uint64_t>& chosen,
              ChosenSamples& found) {
   for (auto i = std::lower_bound(chosen.begin(), chosen.end(), first); i != chosen.end() && *i < first + block.samples(); ++i) {
@@ -38,7 +38,7 @@ void collect(const VisibilityBlock& block, std::uint64_t first, const std::vecto
   }
 }
 
-/// What sources give to samples that respond to them so.
+/// The visibilities of sources for samples with this response.
 std::vector<std::complex<double>> predict_response(const std::vector<Source>& sources, const SampleCoordinates& at,
                                                    const SampleResponse& response, int threads) {
   std::vector<DirectionCosines> directions;

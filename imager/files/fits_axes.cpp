@@ -23,8 +23,8 @@ double cdelt(const FitsFile& file, std::size_t axis) {
   return file.number("CDELT" + std::to_string(axis + 1)).value_or(1);
 }
 
-/// The matrix where any element of it is stated: those that are not are 0, but 1 on the diagonal of PC, and CDELT there of
-/// other axes than the first two in CD.
+/// The matrix if any of its elements is stated. Other elements are 0, except on the diagonal: 1 in PC, and in CD the CDELT of
+/// axes beyond the first two.
 std::optional<FitsSteps> read_matrix(const FitsFile& file, const std::string& matrix, std::size_t axes) {
   FitsSteps all(axes, std::vector<double>(axes));
   bool any = false;

@@ -31,14 +31,14 @@ struct FitsFile::Handle {
 
 namespace {
 
-/// One whose failure errno tells of, where the system caused it.
+/// A call of CFITSIO, after which errno tells of a failure that the system caused.
 class CallOfCfitsio : kernels::CfitsioCall {
  public:
   CallOfCfitsio() { errno = 0; }
 };
 
-/// Whether a disk failed. CFITSIO 4.2 does not look whether what its buffers held could be written before it moves to another
-/// place of the file, and goes on without it.
+/// Whether a disk failed. CFITSIO 4.2 does not check that its buffers could be written before it moves to another place of the
+/// file, and goes on without them.
 bool is_lost_write(int error) {
   constexpr std::array errors{ENOSPC, EDQUOT, EIO, EFBIG};
   return std::find(errors.begin(), errors.end(), error) != errors.end();

@@ -14,7 +14,8 @@ namespace {
 constexpr double rad_per_deg = pi / 180;
 constexpr const char* moving_key = "TRACKFLD";
 
-/// Planes that are evenly spaced in wavelength are so in optical velocity, which takes a line.
+/// The frequency axis. Planes that are evenly spaced in wavelength are evenly spaced in optical velocity, which needs a line's
+/// rest frequency.
 FitsAxis frequency_axis(const SpectralAxis& axis) {
   if (!axis.in_wavelength) return {"FREQ", "Hz", 1, axis.reference_hz, axis.step_hz()};
   const double wavelength_m = speed_of_light_m_s / axis.reference_hz;

@@ -38,7 +38,7 @@ class FitsImageReader : public ImageReader {
   }
 
  private:
-  /// Masks and models need no beams, and may have kept those of an image that they were cut from.
+  /// Reads beams, if possible: masks and models need none, and may have kept the beams of an image that they were cut from.
   void find_beams() {
     try {
       beams_ = read_beams(file_, header_.spectral.channels, static_cast<int>(header_.stokes.size()));

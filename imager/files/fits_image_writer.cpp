@@ -12,10 +12,10 @@
 namespace misfit::imager {
 namespace {
 
-/// Of add_cards(), for which there is room; more move the pixels.
+/// The cards of add_cards() for which there is room; more move the pixels.
 constexpr int later_cards = 24;
 
-/// Cards that the history takes at most; each holds 72 characters of it.
+/// The most cards that the history takes; each holds 72 characters of it.
 int history_cards(const ImageHeader& header) {
   std::size_t cards = 0;
   for (const std::string& line : header.history) cards += line.size() / 70 + 1;

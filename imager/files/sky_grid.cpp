@@ -23,7 +23,7 @@ constexpr std::array<std::pair<Projection, const char*>, 5> known_projections{{{
 
 using Turn = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-/// Its rows are the unit vectors to the east, to the north, and towards a direction.
+/// The matrix whose rows are the unit vectors to the east, to the north, and towards a direction.
 Turn axes_at(const SkyDirection& at) {
   const UvwAxes axes = uvw_axes(at);
   return Turn{{axes.u[0], axes.u[1], axes.u[2]}, {axes.v[0], axes.v[1], axes.v[2]}, {axes.w[0], axes.w[1], axes.w[2]}};
@@ -60,8 +60,8 @@ Plane projected(const SkyGrid& grid, double l, double m, double n) {
   return {stretch * l, stretch * m};
 }
 
-/// Whether a direction with the cosine n from the reference has a point in the plane of its own. The farthest directions of
-/// those that reach around the sphere lie at infinity, or in a circle instead of a point.
+/// Whether a direction with the cosine n from the reference has a point of its own in the plane. In projections that reach
+/// around the sphere the farthest direction lies at infinity, or is a circle instead of a point.
 bool reaches(Projection projection, double n) {
   return n > (projection == Projection::sin || projection == Projection::tan ? 0 : -1 + 1e-12);
 }
@@ -115,7 +115,7 @@ double bent_away(const SkyGrid& grid, const ImageGeometry& upright) {
   return std::isnan(most) ? std::numeric_limits<double>::infinity() : most;
 }
 
-/// Says in words what most parts the grid's axes from those of an upright geometry.
+/// Says in words the main difference between the grid's axes and an upright geometry's.
 std::string turned_in_words(const SkyGrid& grid) {
   const double angle_rad = grid.position_angle_rad(), width_rad = grid.column_step_rad(), height_rad = grid.row_step_rad();
   const double turned = std::abs(std::sin(angle_rad)), oblong = std::abs(height_rad / width_rad - 1);
@@ -176,7 +176,7 @@ UprightGeometry upright_geometry(const SkyGrid& grid) {
   UprightGeometry upright{{grid.width, grid.height, grid.column_step_rad(), grid.reference}, infinite, ""};
   ImageGeometry& g = upright.geometry;
   const double aspect = grid.row_step_rad() / g.cell_rad, oblong = std::abs(aspect - 1) * grid.height;
-  // Farther than that, square pixels lie half of it away, in the last row or in the first.
+  // If rows are farther off, square pixels are taken, which lie half as far away in the last row or in the first.
   if (oblong > rounding && oblong < 2 * same_place_pixels) g.pixel_aspect = aspect;
   g.centre = {(grid.reference_pixel.column - g.centre_column()) * g.cell_rad,
               (g.centre_row() - grid.reference_pixel.row) * g.cell_height_rad()};

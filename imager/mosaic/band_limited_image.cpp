@@ -21,9 +21,9 @@ using Complex = std::complex<double>;
 constexpr int taps = 8;
 constexpr int finer = 2;                       // pixels of the fine plane for one of the image
 constexpr double pass = 0.4, stop = 0.6;       // cycles a pixel
-constexpr int gap = BandLimitedImage::margin;  // pixels that keep the borders of what the DFT repeats apart, on either side
+constexpr int gap = BandLimitedImage::margin;  // pixels on either side that keep the borders of the DFT's repeated images apart
 
-/// The least-misfit function for the part of the fine plane's spectrum that holds the image's.
+/// The least-misfit function for the part of the fine plane's spectrum that the image's spectrum fills.
 const kernels::Kernel& interpolator() {
   static const kernels::Kernel kernel = kernels::kernel_family("least-misfit").make(taps, stop / finer);
   return kernel;
@@ -79,7 +79,7 @@ void transform_rows(const Image& pixels, const Axis& u, Complex* plane, int thre
   });
 }
 
-/// Makes of the `rows` values of a column finer · rows.
+/// Interpolates the `rows` values of a column to finer · rows values.
 void refine_column(const Axis& v, int rows, Complex* column, Complex* fine) {
   std::fill(column + rows, column + v.length, Complex(0));
   v.coarse.complex_to_complex(column, Fft<double>::Sign::forward);
@@ -107,7 +107,7 @@ void refine_columns(const Axis& v, int columns, int rows, Complex* plane, int th
   });
 }
 
-/// Marks what lies within the margin of a mark along a line, whose elements are `step` apart.
+/// Widens marks by the margin along a line, whose elements are `step` apart.
 void widen(const unsigned char* marks, int count, unsigned char* widened) {
   constexpr int reach = BandLimitedImage::margin;
   for (int last = -reach - 1, i = 0; i < count; ++i) {

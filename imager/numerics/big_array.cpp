@@ -14,10 +14,10 @@ void BigMemory::Free::operator()(void* memory) const {
 void BigMemory::reserve(std::size_t bytes) {
   if (bytes <= bytes_) return;
   constexpr std::size_t line = 64;
-  memory_.reset();  // what is too small makes room first
+  memory_.reset();  // memory that is too small is freed first
   bytes_ = 0;
   const std::size_t lines = (bytes + line - 1) / line * line;
-#ifdef MISFIT_SANITIZED  // sanitizers watch the C library's alone
+#ifdef MISFIT_SANITIZED  // sanitizers watch the C library's memory alone
   constexpr bool may_share_pages = true;
 #else
   const bool may_share_pages = bytes < PagePool::page_bytes;

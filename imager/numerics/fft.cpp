@@ -9,8 +9,8 @@
 namespace misfit::imager {
 namespace {
 
-/// FFTW's two precisions under one name. FFTW_ESTIMATE plans do not depend on the machine's mood, and one contiguous row is
-/// where they are as fast as measured ones.
+/// FFTW's two precisions under one name. FFTW_ESTIMATE plans do not depend on timings, and for one contiguous row they are as
+/// fast as measured plans.
 template <typename Real>
 struct Fftw;
 

@@ -8,7 +8,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace misfit::imager::HWY_NAMESPACE {
 
-/// Chosen among the sets as every loop is.
+/// The name is chosen among the sets as every loop is.
 const char* name_of_target() {
   return hwy::TargetName(HWY_TARGET);
 }

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t page_bytes = PagePool::page_bytes;
 
-/// Takes memory of the C library, since operator new may itself take that of the pool.
+/// Takes memory of the C library, since operator new may itself take memory of the pool.
 template <typename T>
 struct PlainAllocator {
   using value_type = T;
@@ -61,7 +61,7 @@ struct Pool {
   std::map<void*, Pieces, std::less<>, PlainAllocator<std::pair<void* const, Pieces>>> taken;
   Pieces spare;
 
-  /// A block of whole pages, of spare ones as far as there are; none where there is no room.
+  /// A block of whole pages, spare ones first; none where there is no room.
   Pieces block(std::size_t bytes) {
     Pieces pieces;
     pieces.reserve(spare.size() + 1);
@@ -88,7 +88,7 @@ struct Pool {
   }
 };
 
-/// It outlasts what is destroyed at the end of the program.
+/// The pool outlasts objects that are destroyed at the end of the program.
 Pool& pool() {
   alignas(Pool) static char room[sizeof(Pool)];
   static Pool* const one = new (room) Pool;
@@ -97,7 +97,7 @@ Pool& pool() {
 
 std::atomic<int> filling_threads{1};
 
-/// Has the system lend and clear pages now. Where it cannot, it will as they are written to.
+/// Has the system lend and clear pages now. Where it cannot, it does so when they are written to.
 void clear([[maybe_unused]] const Pages& fresh) noexcept {
 #ifdef MADV_POPULATE_WRITE  // Linux 5.14
   const std::size_t pages = fresh.bytes / page_bytes;

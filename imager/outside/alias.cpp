@@ -20,7 +20,7 @@ struct Copy {
   std::vector<double> distance{};  ///< [cell] to the nearest pixel
 };
 
-/// The nearest copy, that of n = 0, and those beside them.
+/// The nearest copy, the copy of n = 0, and copies beside them.
 std::vector<Copy> copies_of(const AliasLevels::Axis& axis, double offset, double place) {
   const int nearest = static_cast<int>(std::lround(offset / axis.fft_size));
   std::vector<Copy> copies;
@@ -39,12 +39,12 @@ double either(double a, double b) {
   return a + b - a * b;
 }
 
-/// What tables add to the ℓ of a kernel.
+/// The ℓ that tables add to a kernel's.
 double missed_by_tables(const kernels::Kernel& kernel, const WideTransformOptions& o) {
   return o.lookup ? kernels::judge_table(kernel.polynomial, kernel.misfit, *o.lookup, kernel.x0).max : 0;
 }
 
-/// ℓ of the w axis, wherever between planes a pixel lies, of tables, and of rounding.
+/// ℓ of the w axis, wherever between planes a pixel lies; of tables; and of rounding.
 double missed_besides(const GriddingPlan& plan) {
   const WideTransformOptions& o = plan.options;
   double missed = plan.rounding * plan.rounding;
@@ -58,7 +58,7 @@ double out_of_phase(const GriddingPlan& plan) {
   return 2 * std::sin(std::min(max_w_phase_rad(plan.request.max_abs_w, plan.options.geometry), pi) / 2);
 }
 
-/// No place of `field` lies farther from the middle of a facet along one axis.
+/// The farthest, along one axis, that a place of `field` lies from the middle of a facet.
 double farthest_pixels(const ImageGeometry& image, const ImageGeometry& field) {
   const double apart = std::max(std::abs(image.centre.l - field.centre.l), std::abs(image.centre.m - field.centre.m));
   return (apart + std::max(field.width, field.height) * field.cell_rad) / image.cell_rad + std::max(image.width, image.height);

@@ -13,11 +13,11 @@ constexpr double place_pixels = 0.5;  ///< to which places are known
 struct Group {
   Component brightest;
   double flux_jy = 0;
-  double like_jy = 0;  ///< of those of the brightest one's sign; of these the rows and columns are the mean
+  double like_jy = 0;  ///< of the components of the brightest one's sign; `row` and `column` are their means
   double rows_jy = 0;
   double columns_jy = 0;
 
-  /// Whether a fainter component is part of it: a neighbour, or one that a source between pixels may be made of; those are the
+  /// Whether a fainter component is part of it: a neighbour, or one of the components of a source between pixels, which are the
   /// fainter the farther off they are.
   bool has(const Component& c) const {
     const int apart = std::max(std::abs(brightest.row - c.row), std::abs(brightest.column - c.column));

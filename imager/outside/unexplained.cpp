@@ -13,7 +13,7 @@ bool lies_inside(double u_turns, double v_turns) {
   return inside_grid(2 * u_turns, 2 * v_turns);
 }
 
-/// The residuals of a row's neighbouring channels within one cell: their noise may be one.
+/// The residuals of a row's neighbouring channels within one cell: they may share their noise.
 struct Placed {
   std::int64_t cell = 0;
   double weight = 0;              ///< Σ w
@@ -31,7 +31,7 @@ struct Sums {
   double pair_weight2 = 0;  ///< Σ (w_j w_k)²
   double pair_power = 0;    ///< Σ w_j w_k Re r_j r_k*
 
-  /// All means of a cell: sums over pairs are squares of sums less sums of squares.
+  /// Adds all means of a cell: sums over pairs are squares of sums less sums of squares.
   void add_cell(const Placed* begin, const Placed* end) {
     double w = 0, w2 = 0, w4 = 0, in_power = 0, power2 = 0;
     std::complex<double> sum;
@@ -60,8 +60,8 @@ struct Sums {
     sum_over(ranks, means, weight, power, shared, scatter, pair_weight, pair_weight2, pair_power);
   }
 
-  /// The most that the noise of weight 1 can be in one part: as means of one cell scatter, to three standard deviations; or as
-  /// all do.
+  /// The largest noise of weight 1 in one part: by the scatter of means within cells, to three standard deviations; or by the
+  /// scatter of all.
   double most_unit_noise() const {
     const double of_all = power / means / 2;
     if (shared == 0) return std::sqrt(of_all);

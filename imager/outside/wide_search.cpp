@@ -19,7 +19,7 @@ namespace {
 constexpr int times_wider = 4;
 constexpr double lobe_pixels = 5;  ///< where the main lobe is over
 
-/// A wider field as CLEAN leaves it; what CLEAN itself held is given back.
+/// A wider field after CLEAN, whose own memory is given back.
 struct CleanedField {
   ComponentModel components;
   Image model;
@@ -42,7 +42,7 @@ CleanedField clean_wide_field(const VisibilitySource& source, const Transform& t
   }
   const Image& dirty = images.dirty.front();
   constexpr double deep = 2e-3;           // a source between pixels leaves hardly more of itself
-  constexpr double least_of_peak = 7e-3;  // what is fainter may be made of what such sources leave
+  constexpr double least_of_peak = 7e-3;  // fainter components may be remains of such sources
   CleanOptions options;
   options.max_iterations = 5000;
   options.max_major_cycles = 10;

@@ -16,7 +16,7 @@ double random_image_rms(const SampleSums& sums) {
   return std::sqrt(0.5 * sums.weight2_square) / sums.weight;
 }
 
-/// Becomes `taken`, at rank 0. Returns its statistics, at every rank.
+/// Replaces `image` by `taken`, at rank 0. Returns its statistics, at every rank.
 ImageStatistics replace(Image& image, Image& taken, const Ranks& ranks) {
   image = std::move(taken);
   ImageStatistics statistics = ranks.first() ? statistics_of(image) : ImageStatistics();
@@ -24,7 +24,7 @@ ImageStatistics replace(Image& image, Image& taken, const Ranks& ranks) {
   return statistics;
 }
 
-/// Puts images that are taken into the place of their pixels.
+/// Replaces the compared pixels by the images that are taken.
 void take(const TakenImages& taken, const ComparedPixels& pixels, const Ranks& ranks, AccurateImages& made) {
   FormerImages former;
   former.dirty.resize(made.images.dirty.size());
@@ -68,7 +68,7 @@ AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, co
   return made;
 }
 
-/// Errors of the images relative to their RMS as the pixels show it, a few to many so that the direct sums take less than a
+/// The largest error of the images relative to their RMS, at a few to many pixels, so that the direct sums take less than a
 /// second.
 double largest_checked_error(const VisibilitySource& source, const AccurateImages& made, const Context& context) {
   const StageTimer timer(context.times, stage::check_pixels);
@@ -95,10 +95,10 @@ double largest_checked_error(const VisibilitySource& source, const AccurateImage
 /// How much weaker an image is than its data would let expect.
 struct Weakness {
   double random = 1;    ///< than random data of this size give
-  double coherent = 1;  ///< than data give that belong to one source
+  double coherent = 1;  ///< than data of one source give
 };
 
-/// The largest of all images; one of zeros has no relative error.
+/// The largest weakness of all images; an image of zeros has no relative error.
 Weakness weakness_of(const DirtyImages& images) {
   const double psf_rms = images.psf_statistics.root_mean_square();
   Weakness largest;

@@ -9,7 +9,8 @@
 namespace misfit::imager {
 namespace {
 
-constexpr int countable = 1024;  ///< over more pixels, that the first lies at −x0 and the last one pixel short of x0 is lost
+/// Over more pixels it does not matter that the first lies at −x0, and the last one pixel short of x0.
+constexpr int countable = 1024;
 
 }  // namespace
 

@@ -12,22 +12,22 @@
 namespace misfit::imager {
 namespace {
 
-/// Inner loops take taps in vectors; see TapTable and stack_loops.cpp.
+/// The padded taps: inner loops take taps in vectors; see TapTable and stack_loops.cpp.
 double padded(const GriddingWork& work) {
   const bool one_vector =
       !work.has_w_axis() && work.precision == Precision::single_precision && work.width > 8 && work.width <= 16;
   return one_vector ? 16 : (work.width + 3) / 4 * 4;
 }
 
-/// What a w axis multiplies, as measured: a sample's coordinates have a phase and one more axis; a cell lies in a buffer that
-/// is no longer in the nearest cache; a point of an FFT is turned by its plane's phase.
+/// The factors of costs with a w axis, as measured: a sample's coordinates have a phase and one more axis; a cell lies in a
+/// buffer that is no longer in the nearest cache; a point of an FFT is turned by its plane's phase.
 constexpr double wide_sample = 5;
 constexpr double wide_cell = 1.1;
 constexpr double wide_point = 1.15;
 constexpr double wide_double_cost = 1.45;  ///< over single precision
 
-/// Points times logarithms of the rows and the kept columns of all images; half of both where the grid is Hermitian, in the
-/// plane, and there only half the columns of a PSF, which is even.
+/// Points times logarithms of the rows and the kept columns of all images; half of both where the grid is Hermitian, without a
+/// w axis; there also only half the columns of a PSF, which is even.
 double fft_points(const GriddingWork& work) {
   const double row = work.nu * std::log2(work.nu);
   const double column = work.nv * std::log2(work.nv);

@@ -17,10 +17,10 @@ double unit_rounding(Precision precision, double samples) {
   return std::hypot(2.8e-7, 2.4e-8 * std::sqrt(samples / 2e5));
 }
 
-/// RMS over the image of what all corrections together amplify. Over u and v it is the product; but along w a pixel lies where
-/// its n − 1 does, and the corners, where u and v amplify most, lie at one end, where w does. There are two bounds: with the
-/// largest along w; or along u and v, where n − 1 takes any value π/2 times as often as a uniform one at most, as that of a
-/// paraboloid over a square.
+/// The RMS over the image of the amplification by all corrections. Over u and v it is the product; but along w a pixel lies
+/// where its n − 1 does, and the corners, where u and v amplify most, lie at one end, where w does. There are two bounds: with
+/// the largest along w; or along u and v, where n − 1 takes any value at most π/2 times as often as a uniform one, as a
+/// paraboloid over a square does.
 double image_gain(const AxisKernel& u, const AxisKernel& v, const AxisKernel& w) {
   const double denser = std::sqrt(pi / 2);
   return std::min(u.noise_gain * v.noise_gain * w.largest_gain, u.largest_gain * v.largest_gain * w.noise_gain * denser);

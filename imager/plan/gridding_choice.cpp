@@ -15,7 +15,7 @@ namespace {
 
 constexpr int smallest_fft = 64;
 
-/// From the one that needs the narrowest kernel down: what the wider padding cannot reach, no other can.
+/// Paddings from the one that needs the narrowest kernel down: an accuracy that the widest padding cannot reach, no other can.
 constexpr std::array<double, 5> usual_paddings{2.0, 1.6, 1.4, 1.25, 1.15};
 constexpr std::array<double, 6> usual_paddings_with_w{2.0, 1.75, 1.6, 1.4, 1.25, 1.15};  // taps cost more there, FFTs less
 constexpr std::array<double, 7> usual_w_paddings{40, 10, 4, 2.5, 2.0, 1.6, 1.3};
@@ -66,7 +66,7 @@ class Search {
   int narrowest() const { return request_.kernel_width != 0 ? request_.kernel_width : request_.kernel.min_width; }
   int widest() const { return request_.kernel_width != 0 ? request_.kernel_width : request_.kernel.max_width; }
 
-  /// For which the family's widest x0 serves; x0 came from a padding, and is rounded.
+  /// The padding of the family's widest x0, which came from a padding, and is rounded.
   double least_padding() const { return 0.5 / request_.kernel.max_x0 * (1 - 1e-12); }
 
   /// At least four widths, so that a kernel never meets its own periodic copy.
@@ -75,7 +75,7 @@ class Search {
     return fast_fft_size(std::max({smallest_fft, 4 * width, static_cast<int>(std::ceil(needed))}));
   }
 
-  /// Sizes and cost, for which no kernel is needed.
+  /// A candidate with sizes and cost, which need no kernel.
   GriddingCandidate sized(int width, double padding_u, double padding_v, Precision precision) const {
     GriddingCandidate c;
     c.padding_u = padding_u;
@@ -140,7 +140,7 @@ class Search {
     if (!most_exact_ || c.worst_error < most_exact_->worst_error) most_exact_ = c;
   }
 
-  /// With kernels for the very FFT sizes, which are a little longer than the paddings ask for.
+  /// The candidate with kernels for its true FFT sizes, which are a little larger than the paddings ask for.
   GriddingCandidate made_exactly(const GriddingCandidate& nominal) {
     GriddingCandidate c = nominal;
     c.u = shelf_.axis(c.work.width, c.faceting.width, c.work.nu);
@@ -152,7 +152,7 @@ class Search {
   /// Whether a wider kernel would only gather rounding.
   static bool exhausted(const GriddingCandidate& c) { return c.worst_error < 2 * c.rounding; }
   bool costs_less(const GriddingCandidate& c) const { return !best_ || c.cost_s < best_->cost_s; }
-  /// Where no accuracy is asked, single precision must not be what limits it.
+  /// Whether a candidate may be taken: where no accuracy is asked, single precision must not limit it.
   bool trusted(const GriddingCandidate& c) const {
     if (c.work.precision == Precision::double_precision || request_.accuracy != 0 || request_.precision) return true;
     return c.worst_error >= request_.single_from && c.rounding < 0.1 * c.worst_error;
@@ -203,7 +203,7 @@ class Search {
 
     double at(int other) const { return std::exp(log_error + log_rate * (other - width)); }
   };
-  /// From two narrow kernels, which are solved in no time; wide ones take extended arithmetic. None where all are
+  /// A forecast from two narrow kernels, which are quickly solved; wide ones take extended arithmetic. None where all are
   /// quickly made.
   std::optional<Forecast> forecast(double padding_u, double padding_v, Precision precision) {
     const int width = std::max(narrowest(), 5);
@@ -219,7 +219,8 @@ class Search {
     return Forecast{log_error[1], std::min(-0.1, log_error[1] - log_error[0]), width + 1};
   }
 
-  /// The narrowest width from `least` on that reaches the accuracy, offered; or one that costs too much, not judged; or none.
+  /// The narrowest width from `least` on that reaches the accuracy, which is offered; or a width that costs too much, not
+  /// judged; or none.
   std::optional<int> narrowest_reaching(int least, double padding_u, double padding_v, Precision precision) {
     const std::optional<Forecast> expected = forecast(padding_u, padding_v, precision);
     const auto hopeful = [&](int width) { return !expected || expected->at(width) < 10 * target_; };
@@ -237,7 +238,8 @@ class Search {
     return {};
   }
 
-  /// With the cheapest w axis that keeps the accuracy, or where the plane alone misses it, with one that is as exact as it.
+  /// The candidate with the cheapest w axis that keeps the accuracy or, where the plane alone misses it, with a w axis as exact
+  /// as the plane.
   GriddingCandidate with_w(const GriddingCandidate& plane) {
     const double goal = plane.worst_error < target_ && target_ < HUGE_VAL ? target_ : std::max(1.2 * plane.worst_error, stored);
     std::optional<GriddingCandidate> cheapest, most_exact;
@@ -264,7 +266,7 @@ class Search {
     return cheapest ? *cheapest : *most_exact;
   }
 
-  /// With the shortest polynomials, unless they are somebody's own, or the accuracy would be lost.
+  /// The candidate with the shortest polynomials, unless they are the user's own, or the accuracy would be lost.
   GriddingCandidate simplified(const GriddingCandidate& exact) const {
     const bool somebodys_own = request_.kernel.min_width == request_.kernel.max_width;
     GriddingCandidate result = exact;

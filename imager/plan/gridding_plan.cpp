@@ -32,7 +32,7 @@ std::string times(int a, int b) {
   return std::to_string(a) + " × " + std::to_string(b);
 }
 
-/// How w is dealt with.
+/// The decisions on w.
 Plan w_decisions(const GriddingRequest& request, const GriddingChoice& choice) {
   const std::string phase = "its phase reaches " + text("%.2g", choice.w_phase_rad) + " rad over this image";
   const GriddingWork& work = choice.best.work;
@@ -171,7 +171,7 @@ void set_bounds(GriddingPlan& plan) {
   plan.bound_max = all(u.worst, v.worst, w.worst) + largest_gain * rounding + phases;
 }
 
-/// With one transform for all images. `what` the accuracy is of is for those who ask too much.
+/// A plan with one transform for all images. `what` names the accuracy in the error for one out of reach.
 GriddingPlan plan_together(const GriddingRequest& request, const std::string& what = "accuracy") {
   GriddingPlan plan;
   plan.request = request;
@@ -195,14 +195,14 @@ GriddingPlan plan_together(const GriddingRequest& request, const std::string& wh
   return plan;
 }
 
-/// Nobody has asked for a certain kernel, nor for a certain way.
+/// Whether neither a kernel nor a way of gridding was asked for.
 bool free_to_choose(const GriddingRequest& r) {
   return r.kernel.name == GriddingRequest().kernel.name && r.accuracy != 0 && r.kernel_width == 0 && r.padding == 0 &&
          r.gridder == Gridder::automatic && r.precision != Precision::single_precision && !r.lookup && r.shortest_polynomials &&
          r.samples > 0;
 }
 
-/// Seconds of the terms of direct sums, for each pixel.
+/// Seconds of direct sums, a pixel.
 double direct_pixel_s(const GriddingRequest& request) {
   return 1e-9 * CostModel().direct_ns * static_cast<double>(request.samples);
 }
@@ -256,7 +256,7 @@ Decision psf_decision(const GriddingPlan& plan, double together_s) {
               " of one transform for both"};
 }
 
-/// By gridding and FFTs, one transform for all images or two, whichever costs less.
+/// A plan by gridding and FFTs, with one transform for all images or two, whichever costs less.
 GriddingPlan plan_images(const GriddingRequest& request) {
   if (!request.psf) return plan_together(request);
   const double psf_accuracy = request.psf_accuracy == 0 || request.accuracy == 0 ? request.accuracy : request.psf_accuracy;

@@ -8,18 +8,18 @@
 namespace misfit::imager {
 namespace {
 
-/// 40 MB with the smallest images, 32 MiB that the allocator keeps, and some twenty of holes between images of a few MB.
+/// 40 MB with the smallest images, 32 MiB that the allocator keeps, and some 20 MB of holes between images of a few MB.
 constexpr double process_bytes = 96e6;
 constexpr double pixel_bytes = sizeof(double);
 constexpr double visibility_bytes = sizeof(std::complex<float>), weight_bytes = sizeof(float);
 constexpr double row_bytes = 3 * sizeof(double);
-/// For each sample of the block at hand: its run twice while runs are sorted, at worst one a sample, and room to grow.
+/// For each sample of the block at hand: a run, twice while runs are sorted, as there may be one a sample; and room to grow.
 constexpr double order_bytes = 2 * 12 + 8;
 constexpr double residual_bytes = 2 * sizeof(double);
 constexpr double component_bytes = sizeof(Component);
 
-/// What minor cycles take, in images: those of single precision count half, and FFTs of real images have 3/2 the size either
-/// way.
+/// The memory of minor cycles, in bytes: images in single precision count half, and FFTs of real images have 3/2 the size
+/// either way.
 struct MinorMemory {
   double kept = 0;     ///< through major cycles
   double passing = 0;  ///< while one runs
@@ -46,14 +46,14 @@ MinorMemory minor_memory(double pixels, int scales, int terms) {
 /// Blocks while they stream by.
 struct Streaming {
   double samples = 0;     ///< of a block
-  double order = 0;       ///< bytes in which those of a block are sorted
+  double order = 0;       ///< bytes for sorting a block's samples
   double kept = 0;        ///< bytes of all blocks, where they stay
-  double in_flight = 0;   ///< bytes of those read ahead and at hand, where they do not, and `order`
-  double gathered = 0;    ///< the same while a prediction gathers blocks
+  double in_flight = 0;   ///< bytes of blocks read ahead and at hand, where they are not kept, and `order`
+  double gathered = 0;    ///< bytes in flight while a prediction gathers blocks
   double prediction = 0;  ///< bytes of the visibilities that a prediction hands out
 };
 
-/// The one at hand is let go before the next is read.
+/// The memory of blocks. The block at hand is freed before the next is read.
 Streaming streaming_of(const MemoryDemand& d, const StreamingOptions& options) {
   const auto bytes = [&](double samples) {
     const double rows = d.samples == 0 ? 0 : d.rows * samples / d.samples;
@@ -75,15 +75,15 @@ Streaming streaming_of(const MemoryDemand& d, const StreamingOptions& options) {
   return s;
 }
 
-/// Images of Taylor terms: residuals, or models, of each; and the spectral PSFs.
+/// Numbers of images of Taylor terms: residuals, or models, of each term; and the spectral PSFs.
 struct Terms {
   int terms = 1;
 
   double further() const { return terms - 1; }
   double psfs() const { return 2 * terms - 1; }
   double lasting() const { return further() + psfs() - 1; }  ///< dirty images and PSFs besides the first
-  /// Drawn and written, besides those of one term: PSFs and dirty images that last, models, residuals and restored images, the
-  /// principal solution, and those of the spectrum.
+  /// Images that are drawn and written, besides those of one term: lasting PSFs and dirty images, models, residuals and
+  /// restored images, the principal solution, and images of the spectrum.
   double drawn() const { return terms == 1 ? 0 : lasting() + 3 * further() + terms + 4; }
 };
 
@@ -104,7 +104,7 @@ void add_wider_stages(const WiderDemand& d, const Streaming& s, double lasting, 
   const TransformMemory& t = d.transform;
   const double image = d.pixels * pixel_bytes, kept = s.kept;
   const double tapered = s.in_flight + s.samples * (visibility_bytes + weight_bytes);  // a copy with other weights
-  constexpr double placed_bytes = 32, growing = 2;  // of each sample, by cells of the uv plane
+  constexpr double placed_bytes = 32, growing = 2;  // a sample's, sorted by cells of the uv plane
   const double placed = s.in_flight + s.samples * (residual_bytes + growing * placed_bytes);
   stages.push_back({"the wider field is gridded", process_bytes, kept, tapered, t.visibilities + t.psf, 0, lasting});
   stages.push_back(
@@ -119,11 +119,12 @@ void add_wider_stages(const WiderDemand& d, const Streaming& s, double lasting, 
       {"the wider field's noise is measured", process_bytes, kept, placed, t.visibilities, t.fft, lasting + 2 * image});
 }
 
-/// Cells of densities: half the plane where all samples share one; those of a pointing are held in tiles that samples touch.
+/// The cells of densities that are held: half the plane where all samples share one density; where pointings have their own,
+/// the tiles that their samples touch.
 double density_cells(const MemoryDemand& d) {
   const double half_plane = d.pixels / 2;
   if (d.pointings <= 1) return half_plane;
-  constexpr double of_a_sample = 3;  // measured: 2.2 to 2.7 for each cell with samples, of snapshots in 64 channels
+  constexpr double of_a_sample = 3;  // measured: 2.2 to 2.7 for each cell with samples, in snapshots of 64 channels
   return std::min(static_cast<double>(d.pointings) * half_plane, of_a_sample * d.samples);
 }
 
@@ -137,11 +138,11 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   const Terms n{d.terms};
   const double others = (d.stokes - 1) * image;  // dirty images of the other Stokes parameters
 
-  // The PSF, one more to find the median of each, one that the allocator keeps of several CLEANs, and those of every Stokes
-  // parameter.
+  // The PSF, one image to find the median of each, one that the allocator keeps after several CLEANs, and the images of every
+  // Stokes parameter.
   const double drawn_images = 2 + d.beam_images + (d.stokes > 1 && d.clean_scales > 0 ? 1 : 0) +
                               d.stokes * ((d.clean_scales > 0 ? 3 : 1) + (d.mask ? 1 : 0));
-  // Those that CLEAN is over with hold a model, a residual and perhaps a mask each.
+  // Stokes parameters that are cleaned hold a model, a residual and perhaps a mask each.
   const double finished = (d.stokes - 1) * (2 + (d.mask ? 1 : 0)) * image;
 
   std::vector<MemoryUse> stages;
@@ -157,17 +158,17 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
     stages.push_back({"prediction is verified", process_bytes, kept, 0, t.visibilities, t.fft, others + verified * image});
   add_taylor_stages(d, s, stages);
   if (d.clean_scales > 0) {
-    // Where the PSF's transform did not make the dirty image exactly enough.
+    // The dirty image is made anew where the PSF's transform did not make it exactly enough.
     stages.push_back({"the dirty image is made anew", process_bytes, kept, s.in_flight, t.visibilities, t.fft, 2 * image});
-    const double masks = d.mask ? 2 : 0;  // it, and the residual within
-    // Where every pixel is a component of the model, those of two models and of what they are sorted in.
+    const double masks = d.mask ? 2 : 0;  // the mask, and the residual within If every pixel is a component of the start model:
+                                          // the components of two models, and of the list in which they are sorted.
     const double components = d.start_model ? 3 * component_bytes / pixel_bytes : 0;
     const double lasting = masks + components + 2 + n.lasting();  // dirty image and PSF
     const MinorMemory of_minor = minor_memory(d.pixels, d.clean_scales, n.terms);
     const double minor = of_minor.kept;
     stages.push_back({"the minor cycles run", process_bytes, kept, 0, minor + of_minor.passing, 0,
                       finished + (lasting + n.further() + n.terms) * image});
-    // Of model images.
+    // Visibilities of the terms' model images.
     const double sets = n.terms == 1 ? 0 : n.terms * s.samples * residual_bytes;
     stages.push_back({"the residual is gridded", process_bytes, kept, s.gathered + s.prediction + sets,
                       2 * n.terms * t.visibilities + minor, 0, finished + (lasting + n.terms) * image});
@@ -182,7 +183,7 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   }
   if (d.density) {
     const double cells = density_cells(d);
-    // Factors that blocks are weighed by as they are read, in single precision.
+    // The factors, in single precision, by which blocks are weighed as they are read.
     if (!streaming.keep)
       for (MemoryUse& stage : stages) stage.grids += 4 * cells;
     // The density, and the factors before and after a rank filter; a block's runs, sorted too. Weights are put into the blocks.

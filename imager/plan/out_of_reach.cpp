@@ -12,7 +12,7 @@ namespace {
 
 constexpr double stored = 1e-13;  // below, the rounding of stored kernels differs from width to width
 
-/// What limits an accuracy, and what would not.
+/// The limit of an accuracy, and what would lift it.
 struct Limit {
   std::string name;
   std::string expected;  ///< empty where nothing is known to help
@@ -75,7 +75,7 @@ Limit limit(const GriddingRequest& request, const GriddingCandidate& best) {
   return kernel(request);
 }
 
-/// In two digits, where `worst_error` is the best that can be had: asked for, it will be granted.
+/// An accuracy in two digits that will be granted if it is asked for, where `worst_error` is the best that can be had.
 double nameable_accuracy(double worst_error) {
   constexpr double two_digits = 1.06;  // may round down by 5%
   return (worst_error < stored ? 2 : two_digits) * worst_error;

@@ -15,7 +15,7 @@ std::unique_ptr<Transform> transform_of(const GriddingPlan& plan, const DirectSu
   return make_transform(plan.options);
 }
 
-/// Of making a residual image.
+/// The seconds of making a residual image.
 double residual_cost_s(const GriddingPlan& plan) {
   if (plan.windows) return mosaic_seconds(*plan.windows, 1);
   GriddingWork work = plan.choice.best.work;

@@ -6,7 +6,7 @@
 
 namespace misfit::imager {
 
-/// Hands on the blocks of a stream, weighted, and hands in what they told at its end.
+/// Hands on the blocks of a stream, weighted, and hands in the pass's facts at its end.
 class StreamedVisibilities::Recorder : public BlockStream {
  public:
   Recorder(const StreamedVisibilities& source, std::unique_ptr<BlockStream> stream)

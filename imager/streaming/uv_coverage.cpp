@@ -15,7 +15,7 @@ struct ChannelGroup {
   double cells_per_m = 0;  ///< of their middle
 };
 
-/// Where its highest frequency takes a sample to the square's edge, the cells it passes part a block's channels.
+/// Groups a block's channels by the cells that a sample passes whose highest frequency lies at the square's edge.
 std::vector<ChannelGroup> channel_groups(const std::vector<double>& frequency_hz, double reach_lambda) {
   const double highest_hz = *std::max_element(frequency_hz.begin(), frequency_hz.end());
   const auto cell_of = [&](std::size_t c) { return std::floor(frequency_hz[c] / highest_hz * UvCoverage::side / 2); };
@@ -34,7 +34,7 @@ std::uint32_t usable(const float* weight, std::size_t first, std::size_t end) {
   return count;
 }
 
-/// Outermost cells hold what lies on the square's border, but for rounding.
+/// The outermost cells hold samples on the square's border, within rounding.
 constexpr double rounding = 1e-6;
 
 bool within(double position) {

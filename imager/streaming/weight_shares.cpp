@@ -8,7 +8,7 @@
 namespace misfit::imager {
 namespace {
 
-/// [kind] of the rows of a block, each with a sum for every channel.
+/// [kind], for the rows of a block, a sum for every channel.
 using ChannelSums = std::map<std::uint32_t, std::vector<double>>;
 
 ChannelSums sums_of(const VisibilityBlock& block, std::uint64_t first_row, const ShareOptions& options) {

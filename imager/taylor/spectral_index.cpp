@@ -21,7 +21,7 @@ struct NoiseOfTwo {
 /// Noise of two images at each pixel.
 class NoiseAt {
  public:
-  /// As the images show it where it is the same everywhere, or in units of what it is expected to be.
+  /// The noise is measured on the images where it is the same everywhere; else in units of the expected noise `by`.
   NoiseAt(const Image& first, const Image& second, const std::optional<SolutionNoise>& by, int threads);
 
   NoiseOfTwo at(std::size_t i) const {
@@ -73,7 +73,7 @@ NoiseAt::NoiseAt(const Image& first, const Image& second, const std::optional<So
   if (by) mean_correlation_ = mean_of_known(by->correlation);
 }
 
-/// α and β of images [term], NaN where `is_known(pixel)` is not so or I_0 is not positive.
+/// α and β of images [term], NaN where `is_known(pixel)` is false or I_0 is not positive.
 template <typename IsKnown>
 SpectralImages indices_of(const std::vector<Image>& term, int threads, const IsKnown& is_known) {
   const int width = term.front().width, height = term.front().height;

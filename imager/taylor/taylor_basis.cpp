@@ -31,7 +31,7 @@ std::optional<Matrix> cholesky_factor(const Peaks& peaks, std::size_t n) {
   return factor;
 }
 
-/// Of a lower triangle.
+/// The inverse of a lower triangle.
 Matrix inverse(const Matrix& factor, std::size_t n) {
   Matrix result{};
   for (std::size_t column = 0; column < n; ++column)
@@ -124,7 +124,7 @@ std::vector<Image> principal_solution(const TaylorBasis& basis, const std::vecto
 
 namespace {
 
-/// Of a mosaic's pixel.
+/// The basis in a mosaic's pixel.
 std::optional<TaylorBasis> basis_at(const std::vector<Image>& relative_peaks, std::size_t i) {
   std::array<double, 2 * most_taylor_terms - 1> peaks{1};
   for (std::size_t k = 0; k < relative_peaks.size(); ++k) peaks[k + 1] = relative_peaks[k].pixel[i];

@@ -21,7 +21,8 @@ TermMatrix matrix_of(const TaylorBeam::Moments& moments, Eigen::Index n) {
   return matrix;
 }
 
-/// Of the largest difference of frequencies so small a part that shares taken together are still as far apart as terms need.
+/// How far apart, relatively, frequencies of joined shares may be: such a small part of the largest difference that terms still
+/// have enough distinct frequencies.
 double apart_of(const std::vector<BeamShare>& shares) {
   constexpr double most = 1e-3, parts = 1024;
   double low_hz = shares.empty() ? 0 : shares.front().frequency_hz, high_hz = low_hz;

@@ -10,7 +10,7 @@
 namespace misfit::imager {
 namespace {
 
-/// Of the dirty images' sum, whose last images may be PSFs, of which there are so many.
+/// The images of a sum of dirty images, of which the last `psfs` are PSFs.
 std::vector<Image> normalised_images(AdjointResult& result, const ImagedData& imaged, const Context& context, int psfs = 0) {
   const StageTimer timer(context.times, stage::fft);
   const std::size_t first_psf = result.images.size() - static_cast<std::size_t>(psfs);
@@ -29,7 +29,7 @@ std::vector<Image> normalised_images(std::unique_ptr<AdjointSum> sum, const Imag
   return normalised_images(result, imaged, context, psfs);
 }
 
-/// The sensitivities of powers over that of the first.
+/// The sensitivities of powers over the first sensitivity.
 std::vector<Image> relative_peaks(AdjointResult& result) {
   for (Image& further : result.further_sensitivity)
     for (std::size_t i = 0; i < further.pixel.size(); ++i) further.pixel[i] /= result.sensitivity.pixel[i];

@@ -7,7 +7,7 @@
 namespace misfit::imager {
 namespace {
 
-/// The image with one of its pixels in the middle.
+/// The image, moved so that one of its pixels lies in the middle.
 Image moved_to_middle(const Image& image, int row, int column) {
   Image moved(image.width, image.height);
   const int down = row - image.height / 2, right = column - image.width / 2;

@@ -11,7 +11,7 @@
 namespace misfit::imager {
 namespace {
 
-/// Of a sample that is usable.
+/// The least weight of a usable sample.
 constexpr float least = std::numeric_limits<float>::min();
 
 bool has_f2(Weighting weighting) {
@@ -46,7 +46,7 @@ double bandwidth_tapered(double briggs, double r) {
   return m * briggs / (1 + (m - 1) * briggs);
 }
 
-/// What the taper and the window multiply the weights of a row's channels by. [channel]
+/// The factors of taper and window for a row's channels, [channel].
 class RowTaper {
  public:
   RowTaper(const std::optional<UvTaper>& taper, const UvWindow& window, const std::vector<double>& frequency_hz)
@@ -72,7 +72,7 @@ class RowTaper {
   double r_m_ = 0;
 };
 
-/// What nobody else holds, else a copy. Whoever held it before handed it over under a lock.
+/// The block itself if nobody else holds it, else a copy. Its holder before handed it over under a lock.
 std::shared_ptr<VisibilityBlock> own(std::shared_ptr<const VisibilityBlock> block) {
   if (block.use_count() > 1) return std::make_shared<VisibilityBlock>(*block);
   return std::const_pointer_cast<VisibilityBlock>(std::move(block));  // made to be filled, so no constant

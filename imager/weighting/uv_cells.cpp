@@ -18,7 +18,7 @@ std::vector<double> UvCells::turns_per_m(const std::vector<double>& frequency_hz
   return turns;
 }
 
-/// Written so that the compiler makes vectors of it: what is outside is placed at 0 and marked afterwards.
+/// Locates samples, written so that the compiler makes vectors of it: samples outside are placed at 0 and marked afterwards.
 template <typename Number>
 void UvCells::locate(const double* uvw_m, const std::vector<double>& turns_per_m, const Number& number,
                      std::uint32_t* found) const {

@@ -9,12 +9,12 @@
 namespace misfit::imager {
 namespace {
 
-/// So many that threads share them evenly, and few enough that a piece has some runs for each.
+/// The most bands: enough that threads share them evenly, and so few that a piece has some runs for each.
 constexpr std::size_t most_bands = 128;
 constexpr int smallest_band_shift = 10;
 constexpr std::size_t samples_a_piece = 32768;
 
-/// Becomes that of all ranks, which then have touched the same tiles.
+/// Adds the tiles of all other ranks; all ranks then have touched the same tiles.
 void add_up_tiles(const Ranks& ranks, CellTiles<double>& weight) {
   std::vector<double> touched(weight.cells().tiles());
   for (std::size_t t = 0; t < touched.size(); ++t) touched[t] = weight.tile(t) != nullptr ? 1 : 0;

@@ -23,7 +23,7 @@ struct ColumnRange {
   int end;
 };
 
-/// Calls visit(r, row) for a facet's rows [begin, end) in an image, which memory brings some time before: they lie pages apart.
+/// Calls visit(r, row) for a facet's rows [begin, end) in an image. Rows are prefetched, since they lie pages apart.
 template <typename AnyImage, typename Visit>
 void for_facet_rows(AnyImage& image, const Facet& facet, ColumnRange columns, int begin, int end, const Visit& visit) {
   auto* const first = image.pixel.data() + facet.first_column;

@@ -10,7 +10,7 @@ namespace misfit::imager::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Calls body(tag, i) for whole vectors, and for what is left one by one.
+/// Calls body(tag, i) for whole vectors, and for the rest one by one.
 template <typename Body>
 HWY_ATTR void for_vectors(int count, const Body& body) {
   const hn::ScalableTag<double> wide;

@@ -53,7 +53,7 @@ void gather_columns(const ImagePlanes<Real>& image, int group, int plane, int gr
   gather_rows<Real, true>(image, group, plane, grid, image.rows(), image.nv, column);
 }
 
-/// Its transpose, to a plane and the opposite one.
+/// The transpose of gather_rows(), to a plane and the opposite one.
 template <typename Real>
 void scatter_columns(const Columns<Real>& column, int group, int plane, ImagePlanes<Real>& image) {
   for (int q = 0; q < image.rows(); ++q) {

@@ -181,7 +181,7 @@ HWY_ATTR HWY_INLINE void add_plane(TapRows<Real> taps, int samples, int width, R
   }
 }
 
-/// To `Grids` grids from `first_grid` on.
+/// Spreads samples to `Grids` grids from `first_grid` on.
 template <typename Real, int Vectors, int Grids>
 HWY_ATTR void spread_samples(const StackTaps<Real>& taps, const StackBatch<Real>& samples, const Along<Real>& along,
                              const StackCells<std::complex<Real>>& cells, int first_grid) {

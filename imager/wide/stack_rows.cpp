@@ -38,7 +38,7 @@ void for_chunks(const StackShape& s, const Chunk& visit, const Column& edge) {
       for (int c = 0; c < s.tile; ++c) edge(chunk, c, canonical(s, chunk * s.tile + c));
 }
 
-/// Memory brings a piece of a row, which lies apart from the one before, while others are copied.
+/// Prefetches a piece of a row, which lies apart from the one before, while others are copied.
 template <typename Real>
 void prefetch(const std::complex<Real>* piece, int count) {
   const char* const bytes = reinterpret_cast<const char*>(piece);
@@ -68,7 +68,7 @@ void gather_stored(const PlaneStack<Real>& stack, int row, int plane, int grid, 
       });
 }
 
-/// Its transpose: a row of storage, margins along u filled by periodicity.
+/// The transpose of gather_stored(): a row of storage, margins along u filled by periodicity.
 template <typename Real>
 void scatter_stored(const std::complex<Real>* line, int row, int plane, PlaneStack<Real>& stack) {
   const StackShape& s = stack.shape;
@@ -82,7 +82,7 @@ int negated(int p, int n) {
   return p == 0 ? 0 : n - p;
 }
 
-/// line = row q of a grid; the opposite plane brings what its taps left beyond v = 0 and v = nv/2.
+/// line = row q of a grid, with the opposite plane's taps beyond v = 0 and v = nv/2.
 template <typename Real>
 void gather_row(const PlaneStack<Real>& stack, int q, int plane, int grid, std::complex<Real>* spare,
                 std::complex<Real>* line) {
@@ -94,7 +94,7 @@ void gather_row(const PlaneStack<Real>& stack, int q, int plane, int grid, std::
   });
 }
 
-/// Its transpose.
+/// The transpose of gather_row().
 template <typename Real>
 void scatter_row(const std::complex<Real>* line, int q, int plane, std::complex<Real>* spare, PlaneStack<Real>& stack) {
   const int nu = stack.shape.nu, own = q + stack.shape.margin();

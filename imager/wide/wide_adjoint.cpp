@@ -111,7 +111,7 @@ class WideAdjoint : public AdjointSum {
     return values;
   }
 
-  /// Brings the images to the units that hold the samples to come too. What was gathered in others is gridded first.
+  /// Brings the images to units that hold the coming samples, too. Samples gathered in other units are gridded first.
   void make_room(const std::vector<SampleSums>& coming) {
     std::vector<SumUnit<Real>> value_unit = value_unit_;
     SumUnit<Real> weight_unit = weight_unit_;
@@ -215,7 +215,7 @@ class WideAdjoint : public AdjointSum {
       }
   }
 
-  /// Those of a source of 1 Jy in the image's middle pixel, seen from the facet's.
+  /// Sets the values of a source of 1 Jy in the image's middle pixel, seen from the facet's.
   void set_psf_values(const BatchPhases& phases, StackBatch<Real>& batch) const {
     const ImageGeometry& g = setup_.options.geometry;
     if (!g.off_phase_centre()) return weigh_psf(phases, phases.cosine, phases.sine, batch);

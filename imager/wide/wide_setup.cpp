@@ -16,7 +16,7 @@ StackShape stack_shape_of(const WideTransformOptions& o) {
 
 namespace {
 
-/// Bytes of a row of a pair, and of what the image keeps of a whole pair.
+/// Bytes of a row of a pair, and of the columns that the image keeps of a whole pair.
 struct PairBytes {
   double stored_row;
   double kept;
