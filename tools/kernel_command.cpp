@@ -46,7 +46,7 @@ void refuse_outside(int value, int least, int most, const std::string& option) {
   refuse(value < least || value > most, option, std::to_string(value), std::to_string(least) + " to " + std::to_string(most));
 }
 
-/// The values that are given, for every way to make a kernel; what is missing is looked for afterwards.
+/// Checks the values that are given, for every way to make a kernel; missing ones are looked for afterwards.
 void check_values(const KernelOptions& o) {
   refuse(o.padding != 0 && !(o.padding > 1 && o.padding <= 500), "padding", significant(o.padding, 6),
          "more than 1, at most 500");
@@ -70,13 +70,13 @@ void check_given(const KernelOptions& o) {
   if ((o.x0 == 0) == (o.padding == 0)) throw std::invalid_argument("expected either --x0 or --padding");
 }
 
-/// What looking the table up adds to E.
+/// The part of E that looking the table up adds.
 double table_error(const kernels::KernelTable& table) {
   const auto degree = static_cast<kernels::Interpolation>(table.sampling->interpolation);
   return kernels::table_misfit({table.sampling->per_cell, degree}, table.kernel.x0);
 }
 
-/// Twelve columns for `item`; blanks at its end make up for letters of several bytes.
+/// Prints `item` in twelve columns; blanks at its end make up for letters of several bytes.
 void print_line(const char* item, const std::string& value) {
   std::printf("  %-12s %s\n", item, value.c_str());
 }
@@ -110,7 +110,7 @@ bool is_rough(const kernels::Kernel& kernel) {
   return part > rounding && error > part_of_error * std::sqrt(kernel.misfit.mean);
 }
 
-/// What the polynomials do not hold of the function, and why.
+/// Prints how far the polynomials miss the function, and why.
 void print_shortfall(const kernels::Kernel& kernel, bool is_cut) {
   const double excess = kernel.misfit.mean / kernel.origin.mean_error;
   if (!is_cut && is_rough(kernel)) {
@@ -126,7 +126,7 @@ void print_shortfall(const kernels::Kernel& kernel, bool is_cut) {
   }
 }
 
-/// JSON has no number for what is not known.
+/// A number as JSON, which has none for unknown values.
 nlohmann::json number(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
 }

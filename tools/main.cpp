@@ -28,7 +28,7 @@ namespace {
 using namespace misfit::tools;
 namespace imager = misfit::imager;
 
-/// Says why, and ends the other ranks, too. What is wrong for all is said by the first, which the others give time for that.
+/// Prints the reason, and ends the other ranks, too. An error of all ranks is printed by the first: the others give it time.
 int fail(const char* message, ExitCode code, const World& world) {
   const imager::Ranks& ranks = world.ranks();
   if (!ranks.first()) std::this_thread::sleep_for(std::chrono::seconds(3));
@@ -86,12 +86,12 @@ int run(int argc, char** argv, const World& world) {
   }
 }
 
-/// The run among the processes that share it, which have all left it when this returns.
+/// Runs among the processes that share the run; all have left it when this returns.
 int run_together(int argc, char** argv) {
   try {
     const World world;
     return run(argc, argv, world);
-  } catch (const std::bad_alloc&) {  // the run has not begun, and nobody else says it
+  } catch (const std::bad_alloc&) {  // the run has not begun, and nobody else reports it
     std::fprintf(stderr, "misfit: %s\n", out_of_memory);
     return unusable_data;
   } catch (const std::exception& error) {
@@ -102,8 +102,8 @@ int run_together(int argc, char** argv) {
 
 }  // namespace
 
-/// OpenBLAS, which casacore loads where it is the system's LAPACK, asks its own function of this name how many threads to start
-/// before main begins; an executable's definition comes before a library's. A run solves nothing by LAPACK, and such a thread
+/// The number of threads that OpenBLAS starts before main begins. casacore loads OpenBLAS where it is the system's LAPACK; it
+/// calls its own function of this name, unless the executable defines one. A run solves nothing by LAPACK, and each such thread
 /// asks for memory until it gets it.
 extern "C" [[gnu::visibility("default")]] int openblas_num_threads_env() {
   return 1;

@@ -1,4 +1,4 @@
-// Gives images, and what else is large, memory of the pool of pages: pages fresh from the system took a sixth of a CLEAN run's
+// Gives images, and all that is large, memory of the pool of pages: fresh pages from the system took a sixth of a CLEAN run's
 // time.
 #include "tools/operator_new.h"
 
@@ -11,20 +11,21 @@
 
 #include "imager/numerics/page_pool.h"
 
-#ifndef MISFIT_SANITIZED  // sanitizers watch operators of their own
+#ifndef MISFIT_SANITIZED  // sanitizers watch their own operators
 
 namespace {
 
 bool begun = false;  ///< main
 
-/// Where libraries are loaded nobody catches what is thrown.
+/// Ends the program: while libraries are loaded nobody catches an exception.
 void end_before_main() noexcept {
   constexpr char message[] = "misfit: out of memory while the program is loaded; expected more of it\n";
   static_cast<void>(!write(STDERR_FILENO, message, sizeof message - 1));
   _exit(1);
 }
 
-/// Libraries begin before main, and some that get no memory crash or print a riddle: what they take is looked for first.
+/// Ends the program where there is no memory for libraries. They begin before main, and some crash or print a riddle without
+/// memory.
 void require_memory_for_libraries() noexcept {
   constexpr std::size_t some = std::size_t{4} << 20;
   void* const memory = mmap(nullptr, some, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);

@@ -40,7 +40,7 @@ struct PredictOptions {
   std::string components;
   bool subtract = false;
   std::string datacolumn;   ///< empty: DATA
-  std::string column;       ///< empty: what column_of() says
+  std::string column;       ///< empty: see column_of()
   std::string phasecenter;  ///< as ms_io::phased_to() takes it; empty: see set_for_image()
   ms_io::Selection selection;
   double accuracy = 1e-6;
@@ -53,7 +53,7 @@ struct PredictOptions {
   bool quiet = false;
 };
 
-/// A model as visibilities, with what its column is known by while it is written.
+/// A model as visibilities, with the identity that its column has while it is written.
 struct NamedModel {
   ModelVisibilities visibilities;
   ms_io::Fingerprint fingerprint;
@@ -64,7 +64,7 @@ struct NamedModel {
   std::optional<imager::SkyDirection> sights_from;  ///< where dishes' beams are applied, see PredictionPace
 };
 
-/// That no correlation responds to a part of a model, in words, for each of the parts.
+/// A sentence for each part of a model to which no correlation responds.
 std::vector<std::string> unseen(const PredictOptions& o, const ms_io::MeasurementSet& set,
                                 const std::vector<imager::Stokes>& parts) {
   const std::vector<imager::Stokes> seen = set.seen_stokes();
@@ -76,7 +76,7 @@ std::vector<std::string> unseen(const PredictOptions& o, const ms_io::Measuremen
   return sentences;
 }
 
-/// The beams that --apply-beam takes for a model that shines at these places; tells the model of them.
+/// The beams of --apply-beam for a model that shines at these places; notes them in the model's identity.
 imager::RowBeams beams_of(const PredictOptions& o, const ms_io::MeasurementSet& set,
                           const std::vector<imager::DirectionCosines>& places, NamedModel& named) {
   SetBeams beams = set_beams(set, DishBeams(o.beam));
@@ -91,7 +91,7 @@ imager::RowBeams beams_of(const PredictOptions& o, const ms_io::MeasurementSet& 
   return std::move(beams.rows);
 }
 
-/// Places of pixels that are not 0; of many, some all over the image.
+/// Places of pixels that are not 0; if they are many, some of them all over the image.
 std::vector<imager::DirectionCosines> bright_places(const std::vector<imager::SkyImage>& planes) {
   constexpr std::ptrdiff_t enough = 100000;
   const auto is_bright = [](double value) { return std::abs(value) > 0; };
@@ -115,7 +115,7 @@ std::vector<imager::DirectionCosines> bright_places(const std::array<std::vector
   return places;
 }
 
-/// But for pixels beyond the horizon, which may be NaN.
+/// Whether an image is 0, except for pixels beyond the horizon, which may be NaN.
 bool is_zero(const imager::Image& image) {
   return std::none_of(image.pixel.begin(), image.pixel.end(), [](double value) { return std::abs(value) > 0; });
 }
@@ -197,14 +197,15 @@ NamedModel component_model(const PredictOptions& o, const ms_io::MeasurementSet&
   return named;
 }
 
-/// Where the model goes. Calibrated data are overwritten only for those who name what is read and what is written.
+/// The column that the model goes into. Calibrated data are overwritten only if the user names both the column read and the
+/// column written.
 ms_io::ModelColumn column_of(const PredictOptions& o) {
   if (!o.subtract) return {o.column.empty() ? "MODEL_DATA" : o.column};
   return {o.column.empty() ? "CORRECTED_DATA" : o.column, o.datacolumn.empty() ? "DATA" : o.datacolumn,
           !o.column.empty() && !o.datacolumn.empty()};
 }
 
-/// The values that are given; what is missing is looked for afterwards.
+/// Checks the values that are given; missing ones are looked for afterwards.
 void check_values(const PredictOptions& o) {
   if (!(o.accuracy > 0 && o.accuracy < 1))
     throw std::invalid_argument("--accuracy " + significant(o.accuracy, 3) + ": expected a number above 0 and below 1");
@@ -229,14 +230,14 @@ Outcome outcome_of(const PredictOptions& o, const ms_io::ModelWriteReport& repor
           words};
 }
 
-/// As whoever finds its column incomplete is told.
+/// The command, for people who find its column incomplete.
 std::string command_of(const PredictOptions& o) {
   return "misfit predict " + std::string(o.subtract ? "--subtract " : "") +
          (o.model.empty() ? "--components " + shell_quoted(o.components) : "--model " + shell_quoted(o.model)) +
          (o.apply_beam ? " --apply-beam" : "") + (o.beam.empty() ? "" : " --beam " + shell_quoted(o.beam));
 }
 
-/// Of this rank.
+/// Reads this rank's model.
 NamedModel read_model(const PredictOptions& o, const imager::Ranks& ranks) {
   const int threads = o.threads == 0 ? imager::available_threads(ranks.on_these_cores()) : o.threads;
   imager::PagePool::fill_by(threads);

@@ -17,7 +17,7 @@ namespace misfit::tools {
 
 namespace {
 
-/// Commands that ranks do not share would do everything once in each, and write over each other.
+/// Refuses several ranks for a command that they do not share: each would do everything, and write over the others' files.
 void refuse_several(CLI::App& command, const imager::Ranks& ranks) {
   if (ranks.alone() || command.get_name() == "image" || command.get_name() == "predict") return;
   command.preparse_callback([&ranks, name = command.get_name()](std::size_t) {
@@ -26,21 +26,21 @@ void refuse_several(CLI::App& command, const imager::Ranks& ranks) {
   });
 }
 
-/// Numbers of other programs' arithmetic, too.
+/// Lets options take whole numbers from other programs' arithmetic, too, such as 512.0.
 void take_whole_numbers(CLI::App& command) {
   for (CLI::Option* option : command.get_options())
     if (option->get_type_name().find("INT") != std::string::npos) option->transform(whole_number());
   for (CLI::App* sub : command.get_subcommands({})) take_whole_numbers(*sub);
 }
 
-/// The command that was called, or the last that was before the word that is none.
+/// The command that was called, or the last one before a word that is no command.
 const CLI::App& called(const CLI::App& program) {
   const CLI::App* command = &program;
   while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
   return *command;
 }
 
-/// Of words that no option takes: the options among them, which come before their values, or all.
+/// A message on words that no option takes: on the options among them, which come before their values, or on all.
 std::string unexpected(const std::vector<std::string>& words) {
   std::vector<std::string> options;
   for (const std::string& word : words)
@@ -51,7 +51,7 @@ std::string unexpected(const std::vector<std::string>& words) {
   return CLI::ExtrasError(options).what();
 }
 
-/// What the parser says of a value that is no number, "Could not convert: --option = value", with what was expected.
+/// The parser's message on a value that is no number, "Could not convert: --option = value", with what was expected.
 std::string conversion_message(const std::string& said, const CLI::App& program) {
   const std::string before = "Could not convert: ";
   const std::size_t equals = said.find(" = ");
@@ -105,7 +105,7 @@ std::unique_ptr<CLI::App> make_program(const CommandCall& call) {
   return program;
 }
 
-/// Where a subcommand is missing, or is none, those that there are.
+/// The message lists the subcommands where one is missing, or unknown.
 std::string usage_message(const CLI::ParseError& error, const CLI::App& program) {
   return legible(in_words(error, program));  // it may hold what was typed
 }

@@ -118,7 +118,7 @@ ms_io::SimulatedObservation observation_of(const SimulateOptions& o, const Anten
   return observation;
 }
 
-/// How the rows of an observation see, about each field's own phase centre; tells what may be wrong with the beams.
+/// The beams of an observation's rows, about each field's own phase centre; prints doubts about them.
 imager::RowBeams beams_of(const SimulateOptions& o, const ms_io::SimulatedObservation& observation, ProgressLine& progress) {
   const DishBeams beams(o.beam);
   std::vector<imager::Pattern> of_diameter, of_antenna;

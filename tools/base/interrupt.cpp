@@ -49,7 +49,7 @@ BorrowedProcess::BorrowedProcess(bool catches_interrupts) {
   ours.sa_handler = remember_each;
   ours.sa_flags = SA_RESTART;
   if (is_caught) sigaction(SIGINT, &ours, &process_own);
-  if (is_caught && process_own.sa_handler == SIG_IGN) {  // as nohup and shells have it
+  if (is_caught && process_own.sa_handler == SIG_IGN) {  // as nohup and shells set it
     sigaction(SIGINT, &process_own, nullptr);
     is_caught = false;
   }

@@ -15,7 +15,7 @@ using Units = std::vector<std::pair<std::string, double>>;
 
 double parse(const std::string& text, const std::string& what, const std::string& such_as, const Units& units) {
   const auto fail = [&] {
-    std::string names;  // the first of those of one size
+    std::string names;  // the first name of each size
     double size_before = 0;
     for (const auto& [name, size] : units) {
       if (name.empty()) continue;

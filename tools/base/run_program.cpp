@@ -16,7 +16,7 @@ namespace misfit::tools {
 
 namespace {
 
-/// Until the process has ended, or the user asks to stop.
+/// Waits until the process has ended, or the user asks to stop.
 void watch(pid_t process) {
   const int handle = static_cast<int>(syscall(SYS_pidfd_open, process, 0));
   if (handle < 0) return;

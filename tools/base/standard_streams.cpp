@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <string>
 
-extern "C" [[gnu::weak]] void __lsan_do_leak_check();  // sanitized programs have it
+extern "C" [[gnu::weak]] void __lsan_do_leak_check();  // sanitized programs define it
 
 namespace misfit::tools {
 

@@ -1,6 +1,6 @@
-// What a call of a transform of arrays takes in C++: misfit_arrays ROWS CHANNELS PIXELS EPSILON W THREADS, and uvw (float64),
-// freq (float64), vis (complex64) and wgt (float32) in files of these names in the current folder, as numpy's tofile() writes
-// them. For every line of its input, adjoint or predict, it prints the seconds that one took,
+// Times calls of a transform of arrays in C++: misfit_arrays ROWS CHANNELS PIXELS EPSILON W THREADS, with uvw (float64), freq
+// (float64), vis (complex64) and wgt (float32) in files of these names in the current folder, as numpy's tofile() writes them.
+// For every line of its input, adjoint or predict, it prints the seconds that one took,
 // planning included.
 #include <algorithm>
 #include <cstdio>

@@ -33,7 +33,7 @@ struct Cell {
 constexpr std::size_t visibilities = 200000;
 constexpr double margin = 16;  ///< cells at the border that no visibility comes near
 
-/// One after the other anywhere.
+/// Visibilities at random places.
 std::vector<Cell> scattered(int size) {
   std::mt19937_64 generator(3);
   std::uniform_real_distribution<double> anywhere(margin, size - margin);
@@ -42,7 +42,8 @@ std::vector<Cell> scattered(int size) {
   return cells;
 }
 
-/// As a set has them: 351 baselines, each with 64 neighbouring channels on a ray from the centre, then the next time.
+/// Visibilities in the order of a set: 351 baselines, each with 64 neighbouring channels on a ray from the centre, then the
+/// next time.
 std::vector<Cell> tracks(int size) {
   constexpr std::size_t baselines = 351, channels = 64;
   std::mt19937_64 generator(4);
@@ -96,7 +97,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Of both gridders by turns.
+/// Prints a row with both gridders, timed by turns.
 template <typename Time>
 void print_row(const std::string& what, int turns, Time&& time, Gridder& stock, Gridder& ours) {
   std::vector<double> stock_time, our_time, ratio;

@@ -31,14 +31,14 @@ constexpr int tile = 32;
 constexpr double x0 = 0.25;
 constexpr double cell_rad = 1e-5;
 
-/// One thing to time: `run` once takes `visibilities` through it.
+/// A piece to time: one call of `run` takes `visibilities` through it.
 struct Piece {
   std::string name;
   double visibilities = 1;
   std::function<void()> run;
 };
 
-/// How far the samples of a tile lie from one to the next: rows enter the tile anywhere, and their channels step through it.
+/// The distances between consecutive samples of a tile: rows enter the tile anywhere, and their channels step through it.
 struct Walk {
   const char* name;
   double cells_a_channel;
@@ -125,7 +125,7 @@ void add_ordering(std::vector<Piece>& pieces) {
                       }});
 }
 
-/// A transform's whole way through a block that is in memory, its FFT left out.
+/// A transform's whole work on a block in memory, without its FFT.
 void add_transform(Precision precision, std::vector<Piece>& pieces) {
   CoplanarOptions options;
   options.geometry = {1024, 1024, cell_rad, {}};
@@ -209,7 +209,7 @@ void add_source_sums(std::vector<Piece>& pieces) {
     }
 }
 
-/// Of some calls in a row, after one that brings the piece's memory and branches back to mind.
+/// The time of some calls in a row, after one that warms the piece's caches and branch prediction.
 double time_ns(const Piece& piece) {
   const int calls = piece.visibilities > 5e6 ? 1 : 5;
   piece.run();

@@ -1,6 +1,6 @@
-// How fast visibilities are read: casacore alone, in a bare loop over the columns that misfit reads, which no imager can beat,
-// and misfit's reader to the end of its stream, by turns; it forms Stokes parameters in a second thread (`taskset -c 0` shows
-// what that costs). Opened before: the columns that select rows are read.
+// Measures how fast visibilities are read: casacore alone, in a bare loop over the columns that misfit reads, which no imager
+// can beat, and misfit's reader to the end of its stream, by turns; it forms Stokes parameters in a second thread (`taskset -c
+// 0` shows what that costs). Opened before: the columns that select rows are read.
 #include <casacore/tables/Tables/ArrayColumn.h>
 #include <casacore/tables/Tables/ScalarColumn.h>
 #include <casacore/tables/Tables/Table.h>
@@ -50,7 +50,7 @@ void read_scalar(const casacore::Table& table, const std::string& name) {
   read_column(casacore::ScalarColumn<T>(table, name), casacore::rownr_t{1} << 20, values);
 }
 
-/// What misfit reads: WEIGHT_SPECTRUM where it is, else WEIGHT.
+/// Reads the columns that misfit reads: WEIGHT_SPECTRUM where it is, else WEIGHT.
 void read_bare(const casacore::Table& table, const std::string& data) {
   const bool spectrum = table.tableDesc().isColumn("WEIGHT_SPECTRUM") &&
                         casacore::ArrayColumn<float>(table, "WEIGHT_SPECTRUM").isDefined(0) &&

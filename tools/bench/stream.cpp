@@ -1,4 +1,4 @@
-// Whether data of any size are imaged in bounded memory, at the speed of small ones: visibilities of a made-up array that are
+// Shows whether data of any size are imaged in bounded memory, at the speed of small ones: visibilities of a made-up array are
 // generated as they are read, and never stored, so that 10^9 of them need no disk.
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -77,7 +77,7 @@ class GeneratedSource : public imager::VisibilitySource {
     std::uint64_t seed_ = 1;
   };
 
-  /// All baselines of a time after those of the time before; times are spread over the hours.
+  /// The UVW of a row: rows are all baselines of one time, then of the next; times are spread over the hours.
   void place(std::uint64_t row, double* uvw_m) const {
     std::uint64_t baseline = row % baselines;
     std::size_t a = 0;
@@ -113,7 +113,7 @@ struct Planned {
   tools::MemoryPlan memory;
 };
 
-/// As `misfit image` plans it.
+/// The plan as `misfit image` makes it.
 Planned plan_for(const GeneratedSource& source, const Options& o) {
   imager::GriddingRequest request;
   request.geometry = {o.pixels, o.pixels, o.cell_arcsec * M_PI / 180 / 3600, {}};
@@ -139,7 +139,7 @@ Planned plan_for(const GeneratedSource& source, const Options& o) {
   return {std::move(plan), memory};
 }
 
-/// Nanoseconds a sample.
+/// Runs once, and returns nanoseconds a sample.
 double run(double samples, const Options& o) {
   const GeneratedSource source(static_cast<std::uint64_t>(samples), o.coplanar);
   const auto [plan, memory] = plan_for(source, o);

@@ -31,7 +31,7 @@ void write_label(std::ostream& script, const PictureLayout& at, const Label& lab
          << ", screen " << at.y(label.from_top) << ' ' << label.look << '\n';
 }
 
-/// As many marks as so many screen pixels have room for.
+/// Writes an axis with as many marks as `pixels` have room for.
 void write_axis(std::ostream& script, const PlotAxis& axis, int pixels) {
   const int marks = std::clamp(pixels / 100, 3, 6);
   script << "set " << axis.name << "label " << gnuplot_quoted(axis.label) << "\nset " << axis.name << "tics "

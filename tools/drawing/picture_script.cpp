@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// All that the script is made from. Values of the stretch are in `unit`, offsets in that of `frame`.
+/// All that the script is made from. Values of the stretch are in `unit`, offsets in the unit of `frame`.
 struct Scene {
   const Picture& picture;
   const Sketch& sketch;
@@ -86,8 +86,8 @@ void write_offset_axes(std::ostream& script, const Scene& scene) {
              {'y', label("north", scene.layout.plot_height), frame.south, frame.north});
 }
 
-/// Colours from the lowest shade to the highest; each palette's lightness tells values apart without hue too. Of what has no
-/// noise, whatever is not 0 stands out.
+/// Colours from the lowest shade to the highest; each palette's lightness tells values apart without hue too. In images without
+/// noise all that is not 0 stands out.
 const char* palette(const Scene& scene) {
   if (scene.picture.shades == Shades::brightness)
     return "0 '#000004', 1 '#1f0c48', 2 '#550f6d', 3 '#88226a', 4 '#bb3754', 5 '#e35933', 6 '#f98e09', 7 '#f9c932', 8 "
@@ -113,7 +113,7 @@ ColourBar colour_bar(const Scene& scene) {
   return bar;
 }
 
-/// Marks lie on light paper, so that they can be read on whatever the image holds there.
+/// A box of light paper below marks, so that they can be read whatever the image holds there.
 struct Box {
   double east, west, south, north;
 };

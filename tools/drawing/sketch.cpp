@@ -9,7 +9,7 @@
 namespace misfit::tools {
 namespace {
 
-/// The finite one of larger magnitude.
+/// The finite number of larger magnitude.
 double stronger(double a, double b) {
   return std::isfinite(b) && !(std::abs(a) >= std::abs(b)) ? b : a;
 }

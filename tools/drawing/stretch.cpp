@@ -36,7 +36,8 @@ std::vector<double> tick_values(const Stretch& stretch) {
   return values;
 }
 
-/// Where the faint of the pixels that are not zero begin, of which one, of magnitude `largest`, is known to be there.
+/// The magnitude that nine tenths of the pixels that are not zero exceed, but at least 1e-4 of `largest`, the magnitude of one
+/// of these.
 double faint(const imager::Image& image, double largest) {
   constexpr std::size_t enough = 1 << 18;
   std::vector<double> magnitudes;

@@ -20,7 +20,7 @@ using imager::UvCoverage;
 
 constexpr int middle = UvCoverage::side / 2;
 
-/// The cells that are shown, `half` to either side of 0.
+/// The cells shown, `half` to either side of 0.
 struct Scene {
   imager::Image counts;
   int half = 0;

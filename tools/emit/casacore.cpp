@@ -9,7 +9,7 @@
 namespace misfit::tools {
 namespace {
 
-/// Schwab's function with the image divided by its own transform, as ConvolveGridder("SF") has it.
+/// Schwab's function, with the image divided by its own transform, as in ConvolveGridder("SF").
 HostRule stock_of_casacore(const HostKernel& k) {
   constexpr int per_cell = 100, width = 6;
   const kernels::Kernel own = kernels::kernel_family("spheroidal").make(width, k.x0());
@@ -17,7 +17,7 @@ HostRule stock_of_casacore(const HostKernel& k) {
           kernels::relative_reciprocal_taper(own.polynomial)};
 }
 
-/// Broken at blanks into lines that a header's COMMENT holds.
+/// Lines broken at blanks so that a header's COMMENT holds each.
 std::vector<std::string> wrapped(const std::vector<std::string>& lines) {
   constexpr std::size_t longest = 70;
   std::vector<std::string> found;

@@ -9,7 +9,8 @@
 namespace misfit::tools {
 namespace {
 
-/// The degree of ducc0's TemplateKernel<W>. What is lower is filled with zeros here, since TemplateKernel clears one row only.
+/// The degree of ducc0's TemplateKernel<W>. Lower degrees are filled up with zeros here, since TemplateKernel clears one row
+/// only.
 int degree_of(int width) {
   return width + 3 + width % 2;
 }

@@ -13,7 +13,7 @@ int interpolation_of(const EmitOptions& o, const Host& host) {
   return host.table.interpolated ? cubic : 0;
 }
 
-/// x0 of the kernel: that given, or the host's.
+/// x0 of the kernel: the one given, or the host's.
 double x0_of(const EmitOptions& o, const Host& host) {
   if (o.x0 > 0) return o.x0;
   if (o.host_padding > 0) return 0.5 / o.host_padding;

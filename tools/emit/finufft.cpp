@@ -17,7 +17,7 @@ std::pair<int, int> degrees(int width) {
   return {std::max(4, width - 4) - 1, std::min(19, width + 3) - 1};
 }
 
-/// phi(0) = 1, as FINUFFT's own has it.
+/// The function scaled to phi(0) = 1, as FINUFFT's own is.
 kernels::PiecewisePolynomial scaled(const kernels::PiecewisePolynomial& function) {
   const int width = function.width();
   const double top = function(width % 2 == 1 ? 0 : 0.5)[width / 2];
@@ -64,7 +64,7 @@ void write_finufft(const Emission& e, const std::string& path) {
               c_array("weight times phi; f[n] is counted twice by 2 real(aj)", "f", nodes.weight / 2)));
 }
 
-/// Its prolate function, bandwidth π w (1 − 1/(2σ)) − 0.05 (kerformula 8).
+/// FINUFFT's prolate function, bandwidth π w (1 − 1/(2σ)) − 0.05 (kerformula 8).
 HostRule stock_of_finufft(const HostKernel& k) {
   const int width = k.kernel.width();
   const double bandwidth = std::numbers::pi * width * (1 - 0.5 / k.padding) - 0.05;

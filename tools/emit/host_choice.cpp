@@ -17,7 +17,8 @@ double error_of(const HostRequest& r, const HostKernel& k) {
   return realised_in(*r.host, k).rms;
 }
 
-/// Tables that are read by the nearest entry have odd numbers: of even ones an entry lies where cells meet and C may jump.
+/// Whether the number of entries a cell must be odd, as for tables that are read by the nearest entry: with an even number an
+/// entry lies where cells meet and C may jump.
 bool is_odd(const HostRequest& r) {
   return r.interpolation == 0;
 }
@@ -78,7 +79,7 @@ int fewest_entries(const HostRequest& r, const kernels::Kernel& kernel) {
   return reaches(rounded) ? rounded : enough;
 }
 
-/// The kernel as the host reaches the target with it, where it does.
+/// The kernel in the form with which the host reaches the target; nothing where it does not.
 std::optional<HostKernel> reaching(const HostRequest& r, const kernels::Kernel& kernel) {
   if (r.host->table.usual == 0) return by_degree(r, kernel);
   const int entries = fewest_entries(r, kernel);
@@ -86,7 +87,7 @@ std::optional<HostKernel> reaching(const HostRequest& r, const kernels::Kernel& 
   return with(r, kernel, entries);
 }
 
-/// Whether a wider kernel is worth its width: as cheap with a smaller table, or dearer with one that is ten times smaller.
+/// Whether a wider kernel is worth its width: it costs the same with a smaller table, or more with a table ten times smaller.
 bool is_better(const Host& host, const HostKernel& wider, const HostKernel& found) {
   const bool as_cheap = host.taps_of(wider.kernel.width()) == host.taps_of(found.kernel.width());
   return wider.per_cell * (as_cheap ? 1 : 10) < found.per_cell;

@@ -9,7 +9,7 @@ namespace misfit::tools {
 
 RealisedError realised_error(const HostRule& rule, double x0) {
   const kernels::Misfit axis = kernels::judge(rule.taps, x0, {rule.steps_per_cell, rule.correction});
-  double mean = axis.mean;  // of 1 − hc: with the optimal correction, ℓ itself
+  double mean = axis.mean;  // the mean of 1 − hc: with the optimal correction, ℓ itself
   if (rule.correction) {
     const kernels::Quadrature x = kernels::gauss_legendre(48, 0, x0);
     const Eigen::VectorXd taper = kernels::image_taper(rule.taps, x.node, rule.steps_per_cell);

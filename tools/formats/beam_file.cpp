@@ -19,7 +19,7 @@ std::string card(const std::string& key, int axis) {
   return key + std::to_string(axis);
 }
 
-/// rad of a unit; 1 of direction cosines, which have none.
+/// An axis' unit in rad; 1 for direction cosines, which have none.
 double unit_rad(const imager::FitsFile& file, int axis) {
   static const std::map<std::string, double> units{{"", 1},
                                                    {"rad", 1},
@@ -31,14 +31,14 @@ double unit_rad(const imager::FitsFile& file, int axis) {
   std::string unit = file.text(card("CUNIT", axis));
   std::transform(unit.begin(), unit.end(), unit.begin(), [](unsigned char c) { return std::tolower(c); });
   const std::string type = file.text(card("CTYPE", axis));
-  if (unit.empty() && (type.rfind("RA--", 0) == 0 || type.rfind("DEC-", 0) == 0)) unit = "deg";  // as FITS has them
+  if (unit.empty() && (type.rfind("RA--", 0) == 0 || type.rfind("DEC-", 0) == 0)) unit = "deg";  // FITS's default
   const auto known = units.find(unit);
   if (known == units.end())
     file.fail(card("CUNIT", axis) + " is '" + unit + "'; expected deg, arcmin, arcsec, rad, or none of direction cosines");
   return known->second;
 }
 
-/// 1 where the axis counts to the east, or north, when the zenith is north; −1 of azimuths, which count to the west there.
+/// 1 where the axis counts to the east, or north, when the zenith is north; −1 for azimuths, which then count to the west.
 double direction_of(const imager::FitsFile& file, int axis) {
   const std::vector<std::pair<std::string, double>> known[] = {{{"", 1}, {"RA", 1}, {"X", 1}, {"L", 1}, {"AZ", -1}},
                                                                {{"", 1}, {"DEC", 1}, {"Y", 1}, {"M", 1}, {"EL", 1}}};
@@ -48,7 +48,7 @@ double direction_of(const imager::FitsFile& file, int axis) {
   file.fail(card("CTYPE", axis) + " is '" + type + "'; expected " + (axis == 1 ? "RA, X, L or AZ" : "DEC, Y, M or EL"));
 }
 
-/// Axes that are turned would need another frame than the dish's.
+/// Throws where axes are turned: they would need another frame than the dish's.
 void require_upright(const imager::FitsFile& file) {
   for (const char* key : {"CROTA1", "CROTA2", "PC1_2", "PC2_1", "CD1_1", "CD1_2", "CD2_1", "CD2_2"})
     if (const auto value = file.number(key); value && *value != 0)
@@ -56,7 +56,7 @@ void require_upright(const imager::FitsFile& file) {
                 "; expected axes that are not turned, by CDELT1 and CDELT2");
 }
 
-/// Hz of an axis' unit.
+/// An axis' unit in Hz.
 double unit_hz(const imager::FitsFile& file, int axis) {
   static const std::map<std::string, double> units{{"", 1}, {"Hz", 1}, {"kHz", 1e3}, {"MHz", 1e6}, {"GHz", 1e9}};
   const std::string unit = file.text(card("CUNIT", axis));

@@ -23,7 +23,7 @@ using nlohmann::json;
 
 constexpr const char* format = "misfit CLEAN state 3";
 
-/// In one line.
+/// The text in one line.
 std::string escaped(const std::string& text) {
   const std::string quoted = json_text(json(text));
   return quoted.substr(1, quoted.size() - 2);
@@ -33,7 +33,7 @@ std::string shown(const json& value) {
   return value.is_null() ? "nothing" : value.is_string() ? "'" + escaped(value) + "'" : json_text(value);
 }
 
-/// Its bytes as they lie in memory, little-endian where this runs.
+/// The bytes of values as they lie in memory, little-endian where this runs.
 template <typename T>
 json packed(const std::vector<T>& values) {
   static_assert(std::is_trivially_copyable_v<T> && std::endian::native == std::endian::little);
@@ -51,7 +51,7 @@ std::vector<T> unpacked(const json& value) {
   return values;
 }
 
-/// A whole number from `least` on.
+/// A member that is a whole number of `least` or more.
 template <typename T>
 T whole(const json& object, const char* name, T least = 0) {
   const json& value = object.at(name);
@@ -61,7 +61,7 @@ T whole(const json& object, const char* name, T least = 0) {
   return value;
 }
 
-/// Throws unless something of a file has the pixels of the image.
+/// Throws unless a part of a file has as many pixels as the image.
 void check_pixels(const json& value, const imager::ComponentModel& like) {
   const auto size = [](int width, int height) { return std::to_string(width) + " × " + std::to_string(height) + " pixels"; };
   const int width = whole<int>(value, "width"), height = whole<int>(value, "height");
@@ -119,7 +119,7 @@ json packed_mask(const imager::Image& mask) {
   return {{"width", mask.width}, {"height", mask.height}, {"runs", packed(runs)}};
 }
 
-/// Without pixels, where none was made.
+/// The mask; without pixels where none was made.
 imager::Image unpacked_mask(const json& value, const imager::ComponentModel& like) {
   if (value.at("width") == 0 && value.at("height") == 0) return {};
   check_pixels(value, like);
@@ -185,7 +185,7 @@ imager::MajorCycle unpacked_cycle(const json& c) {
   return cycle;
 }
 
-/// Equal, or the same numbers differently written.
+/// Whether two values are equal, or the same numbers written differently.
 bool means_the_same(const json& a, const json& b) {
   if (a == b) return true;
   if (!a.is_string() || !b.is_string()) return false;
@@ -210,7 +210,7 @@ imager::ComponentModel with_scales_of(const imager::ComponentModel& like, const 
   return same;
 }
 
-/// Names of options whose values differ, or that one alone has.
+/// Names of options whose values differ, or that only one of the two has.
 std::vector<std::string> unlike(const json& then, const json& now) {
   std::vector<std::string> changed;
   json names = now;
@@ -274,7 +274,7 @@ std::uint64_t fnv1a(std::string_view bytes) {
   return sum;
 }
 
-/// Nothing unless the sum at its end is that of the rest.
+/// The content of a file; nothing unless the checksum at its end is right.
 json intact_content(std::string_view file) {
   std::uint64_t sum = 0;
   if (file.size() <= sizeof sum) return nullptr;

@@ -24,14 +24,14 @@ constexpr double degree = M_PI / 180;
 constexpr double arcsec = degree / 3600;
 constexpr std::array<std::string_view, 4> flux_names{"flux_jy", "flux_q_jy", "flux_u_jy", "flux_v_jy"};
 
-/// Which fluxes a list may have.
+/// The fluxes that a list may have.
 enum class Polarised { no, yes };
 
 [[noreturn]] void fail(const std::string& message) {
   throw std::runtime_error(message);
 }
 
-/// What a file holds, so that it fits in a line of a message.
+/// Text of a file, quoted and short enough for a line of a message.
 std::string quoted(std::string_view text) {
   constexpr std::size_t longest = 40;
   std::string result = "'";
@@ -41,7 +41,7 @@ std::string quoted(std::string_view text) {
 
 using Fields = std::vector<std::string_view>;
 
-/// Where each quantity stands in a line.
+/// The column of each quantity in a line.
 class Columns {
  public:
   Columns(std::string_view line, Polarised polarised) : names_(split_at_commas(line)) {
@@ -91,7 +91,7 @@ class Line {
       fail(std::to_string(fields_.size()) + " values, expected " + std::to_string(columns.count()));
   }
 
-  /// Throws unless it is a finite number from `least` to `most`.
+  /// A number of the line. Throws unless it is finite and from `least` to `most`.
   double number(std::string_view name, double least, double most, const std::string& expected) const {
     const std::optional<double> value = finite_number(field(name));
     if (!value || *value < least || *value > most)
@@ -106,7 +106,7 @@ class Line {
     return std::string(x) + " " + quoted(field(x)) + ", " + std::string(y) + " " + quoted(field(y));
   }
 
-  /// FITS RADESYS; empty where the list does not say.
+  /// FITS RADESYS of the line's frame; empty where the list does not state it.
   std::string frame() const {
     if (!columns_.has("frame")) return "";
     for (const auto& [listed, radesys] : frames_of_lists)

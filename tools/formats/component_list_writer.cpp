@@ -35,7 +35,7 @@ std::string flux_column(imager::Stokes stokes) {
   return name;
 }
 
-/// Those of the lists, after that of I.
+/// The Stokes parameters of the lists that have columns, after I.
 std::vector<imager::Stokes> flux_columns(const std::vector<SourcesOf>& lists) {
   std::vector<imager::Stokes> columns{imager::Stokes::I};
   for (const SourcesOf& list : lists)
@@ -52,14 +52,14 @@ std::vector<double> position_values(const imager::DirectionCosines& at,
   return {ra_deg < 360 ? ra_deg : 0, direction.dec_rad / one_degree};
 }
 
-/// What lists call the frame; empty where none is written.
+/// The name of the frame in lists; empty where none is written.
 std::string listed_name(const std::optional<imager::SkyDirection>& phase_centre) {
   for (const auto& [listed, radesys] : frames_of_lists)
     if (phase_centre && phase_centre->frame == radesys) return listed;
   return "";
 }
 
-/// With `fluxes`, one of which is the source's own, and 0 in the other columns.
+/// Appends a line with `fluxes`, one of which is the source's own; the others are 0.
 void append_line(const Source& source, const std::vector<double>& fluxes,
                  const std::optional<imager::SkyDirection>& phase_centre, std::string& text) {
   const auto& [l, m] = source.position;

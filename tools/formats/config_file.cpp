@@ -39,7 +39,7 @@ std::string in_quotes(const std::string& part) {
   return quoted.str();
 }
 
-/// As it stands in a list of an option's values.
+/// A value as it is written in a list of an option's values.
 std::string in_list(const CLI::Option& option, const std::string& part) {
   const bool one_or_each = has(option, OptionMark::one_or_each);
   const bool plain =
@@ -89,7 +89,7 @@ void take_all(CLI::App& command, const std::string& path) {
 }  // namespace
 
 void add_config_option(CLI::App& command) {
-  // Callbacks run in the order in which options were added, so those of the options found here are still to come.
+  // Callbacks run in the order in which options were added, so the callbacks of options found here are still to come.
   command
       .add_option_function<std::string>(
           "--config", [&command](const std::string& path) { take_all(command, path); },

@@ -15,9 +15,9 @@ namespace {
 using imager::ImageGeometry;
 using imager::SkyGrid;
 
-/// Takes directions from the frame of the image to another. Frames are turns of each other, but that the terms of aberration in
-/// FK4 shift directions by up to 0.35″: about the middle of the image they leave 1.7e-6 of the distance from it, or 0.014
-/// pixels where it is 16384 wide.
+/// The turn from the frame of the image to another. Frames are turns of each other, except that the terms of aberration in FK4
+/// shift directions by up to 0.35″. A turn about the middle of the image leaves errors of 1.7e-6 of the distance from it, or
+/// 0.014 pixels where the image is 16384 wide.
 imager::FrameRotation rotation_to(const std::string& frame, const ImageGeometry& image) {
   if (frame == image.phase_centre.frame) return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   const imager::SkyDirection middle =
@@ -66,7 +66,7 @@ GridBeside::GridBeside(const imager::ImageReader& file, const std::string& what,
         image.observation.moving_at;
 }
 
-/// A projection departs from another most at the edges, unless they lie beyond the horizon.
+/// Looks at the edges, where projections differ most, unless they lie beyond the horizon.
 GridOffset offset_between(const imager::GridMap& map, const ImageGeometry& image) {
   const GridOffset edges =
       offset_at(map, {0, image.centre_row(), image.height - 1}, {0, image.centre_column(), image.width - 1});

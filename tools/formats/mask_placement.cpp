@@ -14,10 +14,10 @@ using imager::ImageGeometry;
 using imager::PixelPlace;
 using imager::SkyGrid;
 
-/// How far pixels of two grids may lie apart, as a part of a pixel, and still count as the same; and how far before the nearest
-/// pixel may be another.
+/// The distances, as a part of a pixel, up to which pixels of two grids count as the same, and from which on the nearest pixel
+/// may be another.
 constexpr double same_pixel = 0.01, nearest_pixel = 0.45;
-/// Of two pixels as near, the one to the right or above: rounding does not choose.
+/// Of two pixels equally near, the one to the right or above is taken: rounding does not choose.
 constexpr double tie = 1e-6;
 
 std::string size_text(int width, int height) {

@@ -20,7 +20,7 @@
 namespace misfit::tools {
 namespace {
 
-/// Part of the accuracy that the places of pixels may take, at worst.
+/// The part of the accuracy that misplaced pixels may take.
 constexpr double misplaced_part = 0.3;
 
 void check_pixels(const imager::SkyImage& model, const std::string& path) {
@@ -43,7 +43,7 @@ char lower(char letter) {
   return static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
 }
 
-/// Programs write it in upper and lower case.
+/// Whether a unit is Jy/pixel, which programs write in upper and lower case.
 bool is_jy_per_pixel(std::string unit) {
   for (char& letter : unit) letter = lower(letter);
   return unit == "jy/pixel";
@@ -59,8 +59,8 @@ bool parts_names(char letter) {
   return letter == '.' || letter == '_' || letter == '-';
 }
 
-/// Where a path names its Taylor term: by ".tt" and a number in the file's own name, before a dot or its end; "_tt" and "-tt"
-/// are people's own.
+/// The Taylor term in a path: ".tt" and a number in the file's own name, before a dot or its end; people also write "_tt" and
+/// "-tt".
 struct TermInName {
   std::string before;  ///< "x.model.tt"
   int term = 0;
@@ -85,14 +85,14 @@ std::optional<TermInName> term_in_name(std::string path) {
   return {};
 }
 
-/// The file that `path` leads to by links; `path` itself where it is none.
+/// The file that `path` leads to by links; `path` itself where it is no link.
 std::string behind_links(const std::string& path) {
   std::error_code none;
   const std::filesystem::path file = std::filesystem::canonical(path, none);
   return none ? path : file.string();
 }
 
-/// Of other terms, those that lie beside it.
+/// The other terms that lie beside it.
 std::string other_terms(const TermInName& name) {
   std::string found;
   for (int term = 0; term < 10; ++term)

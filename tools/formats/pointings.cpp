@@ -22,7 +22,7 @@ struct Hexagon {
   double spacing_rad = 0;
 };
 
-/// Nothing where `text` is none.
+/// The hexagon that `text` states; nothing where it is none.
 std::optional<Hexagon> hexagon(const std::string& text) {
   constexpr double most = 10000;
   const std::vector<std::string_view> part = split_at_commas(text);
@@ -37,7 +37,8 @@ std::optional<Hexagon> hexagon(const std::string& text) {
   return {};
 }
 
-/// The points of a lattice whose neighbours are 1 apart, nearest first, those at one distance from the east through the north.
+/// The points of a lattice whose neighbours are 1 apart, nearest first; points at one distance are in order from the east
+/// through the north.
 std::vector<imager::DirectionCosines> lattice(int count) {
   std::vector<imager::DirectionCosines> points;
   const int rings = static_cast<int>(std::ceil(std::sqrt(count))) + 1;  // more than enough: ring r has 6 r

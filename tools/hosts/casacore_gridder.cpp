@@ -23,12 +23,12 @@ struct CasacoreFootprint {
     std::array<double, kernels::kernel_table_max_width> tap;  ///< of which `cells` are set
   };
   std::ptrdiff_t first;      ///< the first cell on every axis, in elements of the array
-  std::array<Axis, 3> axis;  ///< one that the grid lacks has one cell, of tap 1
+  std::array<Axis, 3> axis;  ///< an axis that the grid lacks has one cell, of tap 1
 };
 
 namespace {
 
-/// What is done with (tap, row) for every row of cells along the first axis.
+/// Calls act(tap, row) for every row of cells along the first axis.
 template <typename Value, typename Do>
 void for_each_row(const CasacoreFootprint& at, Value* grid, Do&& act) {
   Value* plane = grid + at.first;

@@ -3,9 +3,9 @@
 //     LD_PRELOAD=libmisfit_wsclean.so MISFIT_WSCLEAN_KERNEL=k.h wsclean -padding 1.2 -no-small-inversion …
 //
 // WSClean's w-stacking gridder fills its table with I0 times sin(πi/Ms)/(πi), calling sin() for i = 1, 2 … in turn, and divides
-// the image by a DCT of the table, planned by fftw_plan_r2r_1d(). The sine for i is answered here such that the table becomes
-// the file's; what the DCT leaves is replaced by the file's divisor. Written against WSClean 3.1 with its default grid mode;
-// when the calls do not come as expected, that is said at the end.
+// the image by a DCT of the table, planned by fftw_plan_r2r_1d(). This library answers the sine for i so that the table becomes
+// the file's, and replaces the DCT's result by the file's divisor. It is written against WSClean 3.1 with its default grid
+// mode, and says at the end if the calls did not come as expected.
 #include <dlfcn.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ namespace {
   std::_Exit(1);
 }
 
-/// What a header for WSClean holds.
+/// The content of a header for WSClean.
 class EmittedKernel {
  public:
   explicit EmittedKernel(const char* path) {
@@ -46,7 +46,7 @@ class EmittedKernel {
     half.assign(table.begin() + static_cast<std::ptrdiff_t>(table.size() / 2), table.end());
   }
 
-  /// What the image is divided by at x, as misfit_divisor() in the file.
+  /// The divisor of the image at x, as misfit_divisor() in the file.
   double divisor(double x) const {
     const double part = std::fmin(std::fabs(x) / x0, 1), y = 2 * part * part - 1;
     double next = 0, after = 0;
@@ -91,7 +91,7 @@ struct Transform {
   int size = 0;
 };
 
-/// What was asked for, and what is said of it in the end.
+/// The calls so far, and the words on them at the end.
 struct State {
   EmittedKernel kernel{std::getenv("MISFIT_WSCLEAN_KERNEL")};
   std::mutex mutex;

@@ -54,7 +54,7 @@ void check_unique(const KernelSource& kernel) {
                                 " for the file, or that file elsewhere for the library");
 }
 
-/// What a library can be called, after "expected one of".
+/// The names that a library can have, after "expected one of".
 std::string libraries_in(const KernelSource& kernel) {
   if (kernel.folder.empty()) return "or with --kernel-folder a library";
   std::string known;

@@ -25,7 +25,7 @@ constexpr Constant constants[] = {{"sample_ns", &imager::CostModel::sample_ns},
                                   {"fft_ns", &imager::CostModel::fft_ns},
                                   {"double_cost", &imager::CostModel::double_cost}};
 
-/// What a file says, if it says it of this machine.
+/// The costs in a file, if they are this machine's.
 std::optional<imager::CostModel> costs_in(const std::string& content) {
   const json kept = json::parse(content, nullptr, false);
   if (!kept.is_object() || !kept.contains("machine") || kept["machine"] != machine_name()) return {};

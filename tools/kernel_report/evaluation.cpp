@@ -20,7 +20,7 @@ constexpr int table_width = 7;
 struct Degree {
   Interpolation interpolation;
   const char* label;
-  std::array<int, 4> samples;  ///< Ms whose ℓ(x) is drawn: from far above the function's own error to close to it
+  std::array<int, 4> samples;  ///< Ms whose ℓ(x) are drawn: from far above the function's own error to close to it
 };
 constexpr std::array<Degree, 4> degrees{{{Interpolation::nearest, "nearest", {16, 256, 4096, 65536}},
                                          {Interpolation::linear, "linear", {16, 64, 256, 1024}},

@@ -44,7 +44,7 @@ Figure corrections_of(const TapFunction& taps) {
   return figure;
 }
 
-/// ℓ(x) with either correction, and how far that of 1/c is from ℓ/(1−ℓ), relative, where ℓ itself is not made of rounding.
+/// ℓ(x) with either correction, and how far, relatively, the one with 1/c is from ℓ/(1−ℓ), where ℓ is not rounding alone.
 struct CorrectionErrors {
   Figure figure;
   double from_law = 0;

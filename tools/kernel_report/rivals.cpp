@@ -29,7 +29,7 @@ constexpr std::array<Rival, 5> rivals{{{"spheroidal-exact", "spheroidal"},
                                        {"prolate", "prolate, order 0"},
                                        {"minimax", "minimax"}}};
 
-/// What rounding leaves of E in doubles is some 3e-31; below this it would be seen.
+/// In doubles rounding makes E some 3e-31 at least; below this value that would be seen.
 constexpr double smallest_in_doubles = 1e-29;
 
 Errors errors_of(const Rival& rival, double x0) {

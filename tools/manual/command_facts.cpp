@@ -9,7 +9,7 @@
 namespace misfit::tools {
 namespace {
 
-/// Those of a set, which is ordered by address.
+/// The names of the options of a set, which is ordered by address.
 std::vector<std::string> sorted_names(const std::set<CLI::Option*>& options) {
   std::vector<std::string> names;
   for (const CLI::Option* option : options) names.push_back(option->get_name());
@@ -17,7 +17,7 @@ std::vector<std::string> sorted_names(const std::set<CLI::Option*>& options) {
   return names;
 }
 
-/// A type as --help has it, "TEXT:{mfs,cube}", taken apart.
+/// Takes a type of --help apart, "TEXT:{mfs,cube}".
 void take_type(const std::string& type, OptionFacts& facts) {
   facts.type = type.substr(0, type.find(':'));
   const std::size_t begin = type.find('{'), end = type.find('}');

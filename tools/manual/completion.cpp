@@ -3,7 +3,7 @@
 namespace misfit::tools {
 namespace {
 
-/// What the lines of one command say to the functions below: "'image --vis') most=…".
+/// Adds the lines of one command for the functions below: "'image --vis') most=…".
 void add_cases(const CommandFacts& command, std::string& words, std::string& values) {
   const std::string name = joined(command.words, " ");
   std::string all;
@@ -21,8 +21,8 @@ void add_cases(const CommandFacts& command, std::string& words, std::string& val
   for (const CommandFacts& each : command.commands) add_cases(each, words, values);
 }
 
-/// Words are as bash divides lines: --option=value is three of them. What begins with - and no digit is an option; what follows
-/// an option that takes no more values, and the program itself, is a command.
+/// Words are as bash divides lines: --option=value is three of them. A word that begins with - and no digit is an option; a
+/// word after the program, or after an option that takes no more values, is a command.
 constexpr const char* complete_line = R"sh(
 _misfit() {
   local word=${COMP_WORDS[COMP_CWORD]} command=misfit option='' given=0 i each

@@ -18,7 +18,7 @@ std::string list(const std::vector<std::string>& names, const std::string& last)
   return text;
 }
 
-/// What follows an option: "INT [INT]".
+/// The values behind an option: "INT [INT]".
 std::string values(const OptionFacts& option) {
   constexpr int few = 3;
   if (option.most == 0) return "";
@@ -28,7 +28,7 @@ std::string values(const OptionFacts& option) {
   return text;
 }
 
-/// What the option is, and what of it the parser knows.
+/// The description of an option, and the facts that the parser knows.
 std::string explanation(const OptionFacts& option) {
   std::string text = option.description;
   if (!text.empty() && text.back() != '.') text += '.';

@@ -20,7 +20,7 @@ std::uint32_t next_letter(const std::string& text, std::size_t& at) {
   return letter;
 }
 
-/// What roff would take for something else: a hyphen for one that may be broken, quotes for curly ones.
+/// Letters that roff would take for others: hyphens for places to break a line, quotes for curly ones.
 const std::map<std::uint32_t, const char*> special{{'\\', "\\e"},  {'-', "\\-"},   {'\'', "\\(aq"}, {'`', "\\(ga"},
                                                    {'^', "\\(ha"}, {'~', "\\(ti"}, {'"', "\\(dq"}};
 

@@ -19,7 +19,7 @@ using imager::SkyDirection;
 
 constexpr int largest_side = 65536;
 
-/// The frame of the first image, where images have that.
+/// The frame of the first image if it is FK5 or FK4, else ICRS.
 std::string common_frame(const std::vector<Pointing>& pointings) {
   const std::string& frame = pointings.front().image->grid().reference.frame;
   return frame == "FK5" || frame == "FK4" ? frame : "ICRS";
@@ -55,7 +55,7 @@ double smallest_cell_rad(const std::vector<Pointing>& pointings) {
   return cell;
 }
 
-/// How far from a grid's reference its pixels lie, at most.
+/// The farthest that pixels lie from a grid's reference.
 double farthest_rad(const imager::SkyGrid& grid) {
   const auto far = [](double reference, int size) { return std::max(std::abs(reference), std::abs(size - 1 - reference)); };
   return std::hypot(far(grid.reference_pixel.column, grid.width) * grid.column_step_rad(),
@@ -68,7 +68,7 @@ struct Reach {
   double m = 0;
 };
 
-/// No less than the images reach.
+/// A reach no smaller than the images'.
 Reach reach_of_images(const std::vector<Pointing>& pointings, const SkyDirection& centre) {
   constexpr double more = 1.2;  // than a plane of projection says
   double farthest = 0;
@@ -80,7 +80,7 @@ Reach reach_of_images(const std::vector<Pointing>& pointings, const SkyDirection
   return {farthest, farthest};
 }
 
-/// Adds the pixels of `header` in which a beam is at the limit or above, and its image known, as far as sizes tell.
+/// Extends the reach to pixels of `header` where a beam is at the limit or above, and its image known, as far as sizes tell.
 void add_reach(const Pointing& pointing, int channel, const imager::ImageHeader& header, double limit, int threads,
                Reach& reach) {
   constexpr int margin = imager::BandLimitedImage::margin;
@@ -98,7 +98,7 @@ void add_reach(const Pointing& pointing, int channel, const imager::ImageHeader&
     }
 }
 
-/// The reach of beams within `outer`, to a pixel of `side` across; of a cube at its two ends.
+/// The reach of beams within `outer`, to a pixel of an image `side` wide; for a cube, at its two ends.
 Reach reach_of_beams(const std::vector<Pointing>& pointings, imager::ImageHeader header, const Reach& outer, int side,
                      double limit, int threads) {
   const int last = header.spectral.channels - 1;

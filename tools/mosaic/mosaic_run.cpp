@@ -50,7 +50,7 @@ bool is_zero(const imager::Image& image) {
   return std::all_of(image.pixel.begin(), image.pixel.end(), [](double value) { return value == 0 || std::isnan(value); });
 }
 
-/// A number of an image over its planes.
+/// The range of a number of an image over its planes.
 struct Range {
   double least = 0, largest = 0;
 
@@ -111,14 +111,14 @@ class MosaicRun {
     warn_of_shared_references();
   }
 
-  /// That the last image is not one of those before.
+  /// Throws where the last image is one of those before.
   void require_new(const std::string& path) const {
     for (std::size_t p = 0; p + 1 < pointings_.size(); ++p)
       if (std::error_code absent; std::filesystem::equivalent(path, pointings_[p].image->path(), absent))
         throw std::runtime_error(path + " is " + pointings_[p].image->path() + " again; expected each image once");
   }
 
-  /// Images of several pointings that were phased to one direction.
+  /// Warns of images of several pointings that were phased to one direction.
   void warn_of_shared_references() {
     constexpr double rounding_rad = 1e-8;
     const Pointing* before = nullptr;
@@ -147,7 +147,7 @@ class MosaicRun {
                     " only");
   }
 
-  /// No file that is read is replaced.
+  /// Claims the paths of the products; no file that is read is replaced.
   void claim_paths() {
     check_writable_folder(o_.output);
     for (const char* product : products) {

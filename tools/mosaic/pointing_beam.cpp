@@ -36,7 +36,7 @@ class MeanPattern : public imager::VoltagePattern {
   imager::Pattern of_;
 };
 
-/// How much the power of a pattern departs from its mean over position angles, at most, where that is a half; as a part of it.
+/// The largest relative departure of a pattern's power from its mean over position angles, where the mean is a half.
 double departure(const imager::VoltagePattern& pattern, double half_sine, double frequency_hz) {
   constexpr int angles = 360;
   const double mean = std::pow(pattern.voltage(half_sine, frequency_hz), 2);
@@ -84,7 +84,7 @@ class FormulaBeam : public PointingBeam {
   static std::string beam_name(const PointingImage& image) { return image.beam_path().empty() ? "X.pb" : image.beam_path(); }
 
  private:
-  /// All frequencies of a plane, as if they weighed alike, at steps by which a beam does not change.
+  /// The frequencies of a plane, with equal weights, in steps over which a beam hardly changes.
   std::vector<imager::BeamShare> shares(int channel) const {
     constexpr double step = 1e-3;
     constexpr int most = 1000;

@@ -44,7 +44,7 @@ std::string beside(const std::string& path, const std::string& product) {
   return "";
 }
 
-/// By its name, and by what lies beside it.
+/// Checks an image by its name, and by the files beside it.
 void check_name(const std::string& path) {
   const std::string name = path.substr(path.rfind('/') == std::string::npos ? 0 : path.rfind('/') + 1);
   const bool of_wsclean = name.ends_with("-image-pb.fits");

@@ -8,7 +8,8 @@
 namespace misfit::tools {
 namespace {
 
-/// CLEAN that goes on into the noise takes it out of the residual, and leaves it in the image.
+/// A doubt about the residual's noise: CLEAN that goes on into the noise takes it out of the residual, and leaves it in the
+/// image.
 std::string cleaned_noise_doubt(const PointingImage& image, double residual_jy, double image_jy) {
   constexpr double much = 1.2;
   if (!(image_jy > much * residual_jy)) return "";

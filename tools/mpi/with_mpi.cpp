@@ -17,7 +17,8 @@ namespace {
 
 using imager::chain_piece;
 
-/// MPI counts with int, and holds copies of what is reduced, which had better fit a cache.
+/// The most numbers in one call: MPI counts with int, and holds copies of the numbers that it reduces, which should fit a
+/// cache.
 constexpr std::size_t most_at_once = std::size_t{1} << 20;
 
 /// Calls exchange(first, count) for pieces of `count` values.
@@ -27,7 +28,7 @@ void in_pieces(std::size_t count, const Exchange& exchange) {
     exchange(first, static_cast<int>(std::min(most_at_once, count - first)));
 }
 
-/// The world of MPI. What fails in it ends the program, with MPI's message.
+/// The ranks of MPI's world. A failure in MPI ends the program, with MPI's message.
 class MpiRanks : public imager::Ranks {
  public:
   MpiRanks() {
@@ -123,8 +124,8 @@ class MpiRanks : public imager::Ranks {
     on_these_cores_ = std::max(1, on_these_cores_);
   }
 
-  /// Begins something and waits for its end. MPI itself keeps a core busy while it waits, of which the others' threads may have
-  /// need. Several threads may wait; MPI is for one at a time.
+  /// Begins something and waits for its end. MPI itself keeps a core busy while it waits, which other ranks' threads may need.
+  /// Several threads may wait; MPI is called by one at a time.
   template <typename Begin>
   void wait(const Begin& begin) const {
     MPI_Request request = MPI_REQUEST_NULL;
@@ -143,9 +144,9 @@ class MpiRanks : public imager::Ranks {
     }
   }
 
-  /// Each rank adds its own to what the next gives it, and gives that to the one before, a piece at a time: while a piece is on
-  /// its way to rank 0 others follow it, so that all take in and give the numbers once, at the same time. A tree, which
-  /// MPI_Reduce makes, lets rank 0 take them in as often as it has branches.
+  /// Each rank adds its numbers to those that it gets from the next rank, and sends the sums to the rank before, a piece at a
+  /// time. Pieces follow each other on their way to rank 0, so that all ranks receive and send the numbers once, at the same
+  /// time. In a tree, as MPI_Reduce makes it, rank 0 receives them from each of its branches.
   void sum_along_ranks(double* values, std::size_t count) const {
     constexpr std::size_t ahead = 2;
     meet();
@@ -195,7 +196,7 @@ class MpiRanks : public imager::Ranks {
   int rank_ = 0;
   int on_this_machine_ = 1;
   int on_these_cores_ = 1;
-  mutable std::mutex one_at_a_time_;  ///< guards calls of MPI, and what follows
+  mutable std::mutex one_at_a_time_;  ///< guards calls of MPI, and the members below
   mutable imager::Traffic traffic_;
 };
 

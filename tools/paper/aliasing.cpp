@@ -25,7 +25,7 @@ constexpr int fields = 3;          // that alias into the image, on either side
 /// Of the FFT, in pixels, so that sources are pixels of the endless plane.
 constexpr int step = 2;
 
-/// What is left of unit sources at the positions x, in sizes of the FFT, where their aliases fall into the image: h(x − n) c(x)
+/// The levels of unit sources at the positions x, in sizes of the FFT, where their aliases fall into the image: h(x − n) c(x)
 /// with n the nearest whole number, times h(0) c(0) of the other axis; NaN where the alias falls beside it.
 Eigen::VectorXd levels_of_aliases(const kernels::Kernel& kernel, const Eigen::VectorXd& x) {
   const auto nearest = [](double at) { return std::round(at); };
@@ -99,7 +99,7 @@ class LargestErrors {
   std::unique_ptr<imager::Transform> spheroidal_;
 };
 
-/// Of the least-misfit and the spheroidal function.
+/// The levels measured with the least-misfit and the spheroidal function.
 std::vector<Series> measured_levels(const SmallField& field, const ComparedKernels& pair) {
   Series least{.label = "least-misfit", .x = {}, .y = {}, .points = true, .line = false};
   for (int p = static_cast<int>(paper_x0 * alias_fft_size) + step / 2; p <= farthest * alias_fft_size; p += step)
@@ -138,7 +138,7 @@ Figure levels_figure(const ComparedKernels& pair) {
       .series = std::move(series)};
 }
 
-/// Over the positions whose aliases fall into the image, both sides of it alike.
+/// The levels over the positions whose aliases fall into the image, both sides of it alike.
 struct AliasLevels {
   double rms = 0;  ///< of the sum of all aliases at a pixel
   double max = 0;

@@ -18,7 +18,7 @@ constexpr double casa_x0 = 5.0 / 12;  // padding 1.2
 constexpr double short_x0 = 0.25;
 constexpr int short_width = 3;
 
-/// One way of gridding: what it is, and how wrong its image is.
+/// A way of gridding, and the error of its image.
 struct Case {
   std::string name;
   double taps = 0;
@@ -41,7 +41,7 @@ double expected_with(const kernels::Kernel& kernel, double x0, const kernels::Co
   return std::sqrt(2 * (function + (table ? kernels::table_misfit({entries_a_cell, Interpolation::nearest}, x0) : 0)));
 }
 
-/// The spheroidal function as CASA grids with it, with 1/c as its correction, by table and as it is.
+/// The spheroidal function as in CASA, with 1/c as its correction, by table and exactly.
 std::vector<Case> casa_cases(const CardScene& scene) {
   const kernels::Kernel kernel = kernels::kernel_family("spheroidal").make(6, casa_x0);
   const kernels::TapFunction taps =

@@ -97,7 +97,7 @@ std::vector<DataTable::Cell> reduction_row(const std::vector<Compared>& least, c
   return hundredfold_row("RMS misfit of the image: spheroidal over least-misfit, same W, x₀ = 0.25", ratio_by_width);
 }
 
-/// RMS of the direct image over that of random phases.
+/// RMS of the direct image over the RMS for random phases.
 double coherence(const CardScene& scene) {
   const std::vector<double>& pixel = scene.direct.pixel;
   const double square = std::inner_product(pixel.begin(), pixel.end(), pixel.begin(), 0.0);

@@ -41,7 +41,7 @@ class Grid {
   std::vector<Complex> value_;
 };
 
-/// l falls along a row: u is counted the other way.
+/// Adds visibilities to the grid. l falls along a row: u is counted the other way.
 void add_visibilities(const PlainGridder& gridder, const imager::VisibilityBlock& block, const std::vector<Complex>& visibility,
                       Grid& grid) {
   const double cells = gridder.geometry.cell_rad * grid.size();

@@ -47,8 +47,9 @@ class TableImages {
   }
 
  private:
-  /// Of interpolation, δ = binomial(p, d+1) (2πx/Ms)^(d+1): its mean square adds to ℓ (kernels::table_misfit is the mean of
-  /// that over |x| ≤ x0). Its mean is not 0 for odd d, where the curve between two entries always bends to one side.
+  /// The misfit expected of interpolation. The mean square of δ = binomial(p, d+1) (2πx/Ms)^(d+1) adds to ℓ
+  /// (kernels::table_misfit is its mean over |x| ≤ x0). The mean of δ is not 0 for odd d, where the curve between two entries
+  /// always bends to one side.
   MisfitProfile expected(const TableOptions& options) const {
     constexpr std::array<double, 4> mean_binomial{0, 1.0 / 12, 0, 19.0 / 720};
     const int degree = static_cast<int>(options.interpolation);
@@ -68,7 +69,7 @@ class TableImages {
   Eigen::VectorXd map_error_;
 };
 
-/// [degree][size]; without entries where a finer table than the last is as good as the function.
+/// [degree][size]; sizes end where finer tables are as good as the function.
 using AllTables = std::array<std::vector<ComparedTables>, 4>;
 
 AllTables all_tables(const CardScene& scene, const kernels::Kernel& kernel) {

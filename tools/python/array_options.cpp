@@ -14,7 +14,7 @@ namespace {
 
 namespace py = pybind11;
 
-/// The same, whose solving Ctrl-C ends, whether or not the thread that asks holds Python's lock.
+/// The family, with solving that Ctrl-C ends, whether or not the calling thread holds Python's lock.
 kernels::KernelFamily interruptible(kernels::KernelFamily family) {
   family.solve = [inner = family.solve](int width, double x0) {
     const py::gil_scoped_acquire python;

@@ -88,7 +88,7 @@ ArrayClean cleaned(const CoordinateArrays& arrays, const py::array& visibility, 
   return without_gil([&] { return clean_arrays(options, at, values); });
 }
 
-/// The images by name, and what CLEAN reports.
+/// Returns the images by name, and CLEAN's report.
 py::dict clean(const py::object& uvw, std::vector<double> frequency_hz, const py::object& mask, const py::array& visibility,
                const py::object& weight, const std::pair<py::object, py::object>& images, const py::dict& options) {
   const CoordinateArrays arrays{uvw, std::move(frequency_hz), mask};

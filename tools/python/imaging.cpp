@@ -27,7 +27,7 @@ struct WrongUsage : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// What casacore says on stderr of failures that it throws, too, as long as it lives.
+/// Silences casacore's words on stderr about failures that it also throws, as long as it lives.
 class QuietErrors {
  public:
   QuietErrors() : before_(std::cerr.rdbuf(nullptr)) {}
@@ -48,7 +48,7 @@ class ToldLines {
   ~ToldLines() { tell_lines({}); }
 };
 
-/// Runs the command that `words` are, as the program does; nothing of it is Python's.
+/// Runs the command `words` as the program does, without a call to Python.
 void run_words(std::vector<std::string> words, Outcome& outcome) {
   std::string line = "misfit";
   for (const std::string& word : words) line += " " + word;

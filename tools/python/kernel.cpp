@@ -32,10 +32,10 @@ kernels::Kernel named_kernel(const std::string& name, int width, double x0) {
 
 namespace {
 
-/// Whatever numpy calls safe to cast to doubles; without a copy what is that already.
+/// An array of all that numpy calls safe to cast to doubles; arrays of doubles are not copied.
 using Input = py::array_t<double, py::array::c_style>;
 
-/// A number in Python for an array without axes, as numpy's own functions have it.
+/// A Python number for an array without axes, as numpy's own functions return.
 py::object unwrapped(const py::array& array) {
   return array.ndim() == 0 ? array[py::tuple()].cast<py::object>() : py::object(array);
 }
@@ -48,9 +48,9 @@ double inside(double value, const char* what, const char* meaning) {
   throw std::invalid_argument(message.str());
 }
 
-constexpr py::ssize_t block = 256;  // what follows from so many fits the processor's caches
+constexpr py::ssize_t block = 256;  // results of so many fit the processor's caches
 
-/// What `function` makes of each block of numbers, [first, end) to `to`, in an array of the same shape.
+/// An array of the input's shape, with the results of `function` for each block of numbers, [first, end) to `to`.
 template <typename Function>
 py::object mapped(const Input& input, const Function& function) {
   py::array_t<double> result(std::vector<py::ssize_t>(input.shape(), input.shape() + input.ndim()));
@@ -116,7 +116,7 @@ std::string description(const Kernel& kernel) {
   return text.str();
 }
 
-/// `work` on a file: what goes wrong is an OSError.
+/// Calls `work` on a file; its errors become OSError.
 template <typename Work>
 auto on_file(PyObject* error_type, const Work& work) {
   try {

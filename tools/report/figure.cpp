@@ -56,7 +56,7 @@ std::size_t write_data(std::ostream& script, const Figure& figure, std::size_t n
   return points;
 }
 
-/// Whether gnuplot labels every power of ten, on a logarithmic axis; where it leaves some out, its finer marks are a jumble.
+/// Whether gnuplot labels every power of ten on a logarithmic axis; where it leaves some out, its finer marks confuse.
 bool labels_each_decade(const Axis& axis, const Figure& figure, std::vector<double> Series::*values) {
   constexpr double most_decades = 8;
   if (!axis.logarithmic) return true;
@@ -98,7 +98,7 @@ std::string line_style(const Series& series, std::size_t number) {
   if (series.law) return "with lines lw 1.2 dt (6,4) lc rgb '#000000'";
   if (series.columns) return "with boxes fill solid noborder lc rgb '#56b4e9'";
   style << "with " << (!series.points ? "lines" : series.line ? "linespoints" : "points");
-  const bool marks_alone = series.points && !series.line;  // which have nothing but themselves to be seen by
+  const bool marks_alone = series.points && !series.line;  // so marks alone must be visible
   style << " lw " << (series.points && !marks_alone ? 1.2 : 1.8) << " lc rgb '" << colour[number % colour.size()] << "'";
   if (series.points) style << " pt " << mark[number % mark.size()] << " ps " << (marks_alone ? 0.8 : 0.6);
   const char* dashes = dash[number % dash.size()];

@@ -12,7 +12,7 @@
 namespace misfit::tools {
 namespace {
 
-/// The fitted beam of the main lobe into `choice`, or nothing and why.
+/// Puts the fitted beam of the main lobe into `choice`, or nothing and the reason.
 void fit(const imager::Image& psf, double cell_rad, BeamChoice& choice) {
   try {
     choice.main_lobe = imager::fit_beam(psf, cell_rad);

@@ -23,7 +23,7 @@ double shared_bytes(double rows) {
   return rows * (3 * sizeof(double) + sizeof(std::uint32_t));
 }
 
-/// Of the blocks that are read ahead, and at hand.
+/// The bytes of the blocks that are read ahead, and at hand.
 double in_flight_bytes(const RunScene& scene, const RunPlan& plan) {
   constexpr double blocks = 3;
   const double sample = 1.0 * plan.gridding.request.stokes * sizeof(std::complex<float>) + sizeof(float);
@@ -31,9 +31,9 @@ double in_flight_bytes(const RunScene& scene, const RunPlan& plan) {
   return blocks * static_cast<double>(scene.set.read_at_once()) * (sample + row);
 }
 
-/// While so many channels are imaged at a time, beside `waiting` bytes: each has a copy of its visibilities, grids and images,
-/// and its thread an allocator's memory; buffers of FFTs are the threads' anyway. An image on its way to another rank is there
-/// as an image, as a message, and as that which MPI sends.
+/// The memory while `workers` channels are imaged at a time, beside `waiting` bytes: each channel has a copy of its
+/// visibilities, grids and images, and its thread an allocator's memory; FFT buffers are counted with the threads. An image on
+/// its way to another rank exists as an image, as a message, and as MPI's copy.
 imager::MemoryUse while_imaging(imager::MemoryUse one, double waiting, int workers, double message_bytes) {
   constexpr double allocator_bytes = 56e6;  // see imager::peak_memory()
   one.process += (workers - 1) * allocator_bytes;
@@ -43,14 +43,14 @@ imager::MemoryUse while_imaging(imager::MemoryUse one, double waiting, int worke
   return one;
 }
 
-/// Ranks take channels in turns until there are none, and are done at about the same time.
+/// The most channels in a batch so that ranks, which take batches in turns until there are none, end at about the same time.
 int channels_dealt_out(const RunScene& scene) {
   constexpr int turns = 3;
   return scene.ranks.alone() ? scene.channels
                              : (scene.channels + turns * scene.ranks.size() - 1) / (turns * scene.ranks.size());
 }
 
-/// All ranks hold what each has room for, and make no more at a time.
+/// Makes all ranks hold as many channels as the one with the least room, and make no more at a time.
 void agree(ChannelBatches& batches, const RunScene& scene) {
   batches.channels = -static_cast<int>(imager::largest_of(scene.ranks, -batches.channels));
   batches.read_again = imager::any_of(scene.ranks, batches.read_again);

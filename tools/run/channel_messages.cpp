@@ -8,7 +8,7 @@
 
 #include "tools/base/packed.h"
 
-// The members of what is sent, in their order. cereal finds these functions by the types' namespaces.
+// The members that are sent, in their order. cereal finds these functions by the types' namespaces.
 
 namespace misfit::imager {
 

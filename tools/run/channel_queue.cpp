@@ -13,7 +13,7 @@
 namespace misfit::tools {
 namespace {
 
-/// Rank 0's. A thread of its own answers the others, one message at a time.
+/// The queue of rank 0. A thread of its own answers the other ranks, one message at a time.
 class FirstQueue : public ChannelQueue {
  public:
   FirstQueue(const imager::Ranks& ranks, std::vector<imager::PlaneRange> batches, ChannelSink& sink)
@@ -57,7 +57,7 @@ class FirstQueue : public ChannelQueue {
     return batches_[number];
   }
 
-  /// From here on, unless nobody is left to be answered.
+  /// Begins to answer other ranks, unless none is left.
   void answer_others() {
     if (at_work_ > 0 && !thread_.joinable()) thread_ = std::thread([this] { keep_answering(); });
   }
@@ -104,13 +104,13 @@ class FirstQueue : public ChannelQueue {
   ChannelSink& sink_;
   InOrder<MadeChannel> in_order_;
   std::atomic<std::size_t> next_ = 0;
-  std::atomic<int> at_work_;  ///< others that have not ended
+  std::atomic<int> at_work_;  ///< other ranks that have not ended
   std::atomic<bool> left_ = false;
   std::exception_ptr thrown_;
   std::thread thread_;
 };
 
-/// Another rank's.
+/// The queue of another rank.
 class FarQueue : public ChannelQueue {
  public:
   explicit FarQueue(const imager::Ranks& ranks) : ranks_(ranks) {}
@@ -132,7 +132,7 @@ class FarQueue : public ChannelQueue {
   }
 
  private:
-  /// What is written of it goes to rank 0.
+  /// An image whose planes go to rank 0.
   class SentImage : public imager::ImageWriter {
    public:
     SentImage(FarQueue& queue, std::string kind) : queue_(queue), kind_(std::move(kind)) {}

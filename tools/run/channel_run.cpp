@@ -23,8 +23,8 @@ bool MadeChannel::stopped() const {
 
 namespace {
 
-/// Whether the dirty image is nothing but what CLEAN begins with. Of several Stokes parameters or channels some may have
-/// nothing to clean.
+/// Whether dirty images are used only to begin CLEAN. With several Stokes parameters or channels some may have nothing to
+/// clean.
 bool images_begin_clean(const ChannelScene& scene) {
   const TypedClean& o = scene.options.clean;
   return o.niter > 0 && o.startmodel.empty() && scene.header.stokes.size() == 1 && !scene.options.cube.is_cube();
@@ -146,7 +146,7 @@ void ChannelRun::make_terms() {
   progress().end();
 }
 
-/// Every rank reads the start model, which all predict.
+/// Every rank reads the start model, since all ranks predict it.
 void ChannelRun::check_start() {
   const ImageOptions& o = scene_.options;
   if (o.taken.calcres || o.clean.startmodel.empty()) return;
@@ -172,12 +172,12 @@ void ChannelRun::check_start() {
   progress().end();
 }
 
-/// Compares residuals that were taken with `values` [term], what the start model leaves in some pixels.
+/// Compares residuals that were taken with `values` [term], the residuals of the start model in some pixels.
 void ChannelRun::compare_residuals(std::size_t stokes, const imager::ComparedPixels& pixels,
                                    const std::vector<imager::Image>& values) {
   const imager::Image& first = images_.images.dirty[stokes];
   const imager::SampleSums& sums = images_.images.sums[stokes];
-  // What was subtracted is as exact as images of the data are, about so bright.
+  // The subtracted model is as exact as images of the data, which are about this bright.
   const double data_rms = images_.images.psf_statistics.root_mean_square() * std::sqrt(sums.weight_square / sums.weight);
   for (std::size_t t = 0; t < values.size(); ++t) {
     const imager::Image& residual = t == 0 ? first : taylor_->images().dirty[t - 1];
@@ -191,7 +191,7 @@ void ChannelRun::verify() {
   if (scene_.options.verify == 0) return;
   const imager::StageTimer timer(times(), imager::stage::verify);
   progress().begin("verify" + name_);
-  // CLEAN may begin with a less exact image, and shall with or without this.
+  // CLEAN may begin with a less exact image, whether or not the run verifies.
   std::optional<imager::DirtyImages> exact;
   imager::StageTimes within;  // they are this stage's
   if (images_.dirty_accuracy != 0)
@@ -250,7 +250,7 @@ void ChannelRun::follow_clean() {
     imager::follow_clean(imaged(s), images_.transform->coarser(), expansion, context());
 }
 
-/// Told of the state with which CLEAN begins, which may be that of a run before, and after every major cycle.
+/// Called with the state that CLEAN begins with, which may be from a run before, and after every major cycle.
 void ChannelRun::count_cycle(const imager::CleanState& state) {
   const int iterations = state.cycles.back().iterations;
   if (iterations_) {

@@ -12,8 +12,8 @@ ms_io::FrequencyRange ChannelVisibilities::frequencies_of(const imager::PlaneRan
   return {band.low_hz, band.high_hz};
 }
 
-/// What of the set such channels need; null where it has nothing for them. What channels before them need too is counted for
-/// those.
+/// The part of the set that these channels need; null where it has nothing for them. Samples that earlier channels need, too,
+/// are counted there.
 std::unique_ptr<ms_io::MeasurementSet> ChannelVisibilities::part_of(const imager::PlaneRange& range) const {
   std::optional<ms_io::FrequencyRange> counted;
   if (range.first > 0) counted = frequencies_of({0, range.first});
@@ -30,7 +30,7 @@ std::string ChannelVisibilities::work_on(const imager::PlaneRange& batch) const 
   return (batches_.read_again ? "image " : "images ") + numbers_of(batch);
 }
 
-/// The visibilities of some channels, unless they are there.
+/// Gathers the visibilities of some channels, unless they are there.
 void ChannelVisibilities::gather(const imager::PlaneRange& batch, ProgressLine& progress, imager::StageTimes& times) {
   if (gathered_) return;
   first_ = batch.first;

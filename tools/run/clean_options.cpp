@@ -16,7 +16,7 @@ namespace {
 
 constexpr int most_masks = 1000;
 
-/// In pixels; the largest that there can be where none is given.
+/// The image's smaller side in pixels; the largest possible side where none is given.
 int smallest_side(const ImageOptions& o) {
   return o.imsize.empty() ? std::numeric_limits<int>::max() : *std::min_element(o.imsize.begin(), o.imsize.end());
 }
@@ -160,7 +160,7 @@ void declare(CLI::App& command, TypedClean& o) {
        OptionMark::not_repeated);
 }
 
-/// Options of masks that are made from residuals change nothing of other masks.
+/// Refuses options of automatic masks where they have no effect.
 void check_of_auto_masks(const TypedClean& o) {
   if (o.usemask == "auto") return;
   const TypedClean usual;

@@ -18,7 +18,7 @@
 namespace misfit::tools {
 namespace {
 
-/// What --start and --chanwidth may be given in.
+/// The units of --start and --chanwidth.
 enum class SpectralUnit { none, channels, window_channels, frequency, velocity };
 
 struct SpectralQuantity {
@@ -144,7 +144,7 @@ class AxisMaker {
     return hz + 0.5 * (axis_.increment_hz - std::copysign(std::abs(channel_width_hz()), axis_.increment_hz));
   }
 
-  /// Of a channel of the window among those that are selected.
+  /// The place of a channel of the window among the selected ones.
   int place_of(int channel) const {
     const auto found = std::find(first_.channel.begin(), first_.channel.end(), channel);
     if (found == first_.channel.end())
@@ -155,7 +155,7 @@ class AxisMaker {
     return static_cast<int>(found - first_.channel.begin());
   }
 
-  /// So many that the last one holds the middle of the last data, or reaches half-way into them.
+  /// So many planes that the last one holds the middle of the last data, or reaches half-way into them.
   int planes_to_end() const {
     const double end = axis_.increment_hz > 0 ? band_.high_hz : band_.low_hz;
     const double planes = axis_.plane_of(end) + 0.5;

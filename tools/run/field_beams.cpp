@@ -24,14 +24,14 @@ constexpr std::size_t most_listed = 20;
 struct SeenCentre {
   std::string field;
   double from_centre_rad = 0;
-  std::string no_beam = {};  ///< why none is known; else empty, and
+  std::string no_beam = {};  ///< why no beam is known; else empty, and
   double width_rad = 0;      ///< of the beam between its half-power points,
   double beam = 0;           ///< the beam at the centre,
   bool beyond_null = false;  ///< whether no dish's main lobe reaches that far
   std::string doubt = {};    ///< what may be wrong with it; else empty
 };
 
-/// By the pointing's rows. Throws imager::NoSimpleBeam.
+/// The beam of a pointing's rows. Throws imager::NoSimpleBeam.
 imager::PrimaryBeam beam_of(const ms_io::FieldPointing& pointing, const std::vector<imager::AntennaSort>& sorts,
                             const ApartOptions& o, std::string& doubt) {
   std::map<std::uint8_t, imager::Pattern> patterns;  // of these rows' antennas alone: others may have none
@@ -73,7 +73,7 @@ std::string described(const SeenCentre& seen) {
   return text + ", to " + significant(seen.beam, 3);
 }
 
-/// The first so many of them, which lie farthest away; all where that is 0.
+/// Describes the first `most` of them, which lie farthest away; all where `most` is 0.
 std::string described(const std::vector<SeenCentre>& farthest_first, std::size_t most) {
   std::string text;
   const std::size_t count = most == 0 ? farthest_first.size() : std::min(most, farthest_first.size());
@@ -82,7 +82,7 @@ std::string described(const std::vector<SeenCentre>& farthest_first, std::size_t
   return text;
 }
 
-/// Why beams are not known, or in doubt, once each.
+/// The reasons why beams are not known, or in doubt, once each.
 std::string doubts_of(const std::vector<SeenCentre>& fields) {
   std::vector<std::string> told;
   const auto tell = [&told](const std::string& before, const std::string& reason) {
@@ -108,8 +108,8 @@ bool nearer(const ms_io::FieldPointing& a, const ms_io::FieldPointing& b) {
   return a.from_centre_rad < b.from_centre_rad;
 }
 
-/// That the image's centre lies beyond the first null of the only field, or of several that point alike; empty where it does
-/// not, or the beam is not known.
+/// A warning that the image's centre lies beyond the first null of the only field, or of several that point alike; empty where
+/// it does not, or the beam is not known.
 std::string far_warning(const ms_io::FieldPointing& nearest, const ms_io::MeasurementSet& set, const ApartOptions& o) {
   // The smallest dish's null lies beyond its λ/D: nearer than that the antennas of all rows need not be read.
   const double least_rad =
@@ -128,7 +128,7 @@ std::string far_warning(const ms_io::FieldPointing& nearest, const ms_io::Measur
          frequency_text(o.frequency_hz, 4) + doubts_of({seen}) + "; it may show noise alone";
 }
 
-/// Names of those that do not see the centre.
+/// The names of fields that do not see the centre.
 std::string names_beyond(const std::vector<SeenCentre>& fields) {
   std::string names;
   std::size_t beyond = 0;
@@ -137,7 +137,7 @@ std::string names_beyond(const std::vector<SeenCentre>& fields) {
   return beyond > most_listed ? names + " and " + std::to_string(beyond - most_listed) + " more" : names;
 }
 
-/// By how much directions may differ and count as one.
+/// The largest angle between directions that count as one.
 double noticed_apart_rad(const std::vector<SeenCentre>& seen) {
   constexpr double same_without_beam_rad = 5e-6;  // an arcsecond
   double narrowest_rad = 0;
@@ -146,7 +146,7 @@ double noticed_apart_rad(const std::vector<SeenCentre>& seen) {
   return narrowest_rad > 0 ? same_pointing_beams * narrowest_rad : same_without_beam_rad;
 }
 
-/// "feed 1", of which antenna where those of its number differ, and of which set where there are several.
+/// "feed 1", with its antenna where feeds of this number differ, and its set where there are several.
 std::string feed_words(const ms_io::FeedOffset& feed, const std::vector<ms_io::FeedOffset>& feeds) {
   const auto any = [&](const auto& holds) { return std::any_of(feeds.begin(), feeds.end(), holds); };
   const auto alike = [&](const ms_io::FeedOffset& other) { return other.set == feed.set && other.feed == feed.feed; };
@@ -160,11 +160,11 @@ std::string feed_words(const ms_io::FeedOffset& feed, const std::vector<ms_io::F
 /// Words for what points apart: "fields".
 struct ApartWords {
   std::string what;
-  std::string where;   ///< is seen by them: "the image's centre"
-  std::string remedy;  ///< by which one is taken alone
+  std::string where;   ///< the place that they see: "the image's centre"
+  std::string remedy;  ///< the option that takes one alone
 };
 
-/// Lists what points apart. Throws std::runtime_error where some see nothing, unless `force`.
+/// Lists fields or feeds that point apart. Throws std::runtime_error where some see nothing, unless `force`.
 FieldNotes notes_on_averaged(std::vector<SeenCentre> seen, const ApartWords& words, const ApartOptions& o) {
   std::stable_sort(seen.begin(), seen.end(),
                    [](const SeenCentre& a, const SeenCentre& b) { return a.from_centre_rad > b.from_centre_rad; });
@@ -182,7 +182,7 @@ FieldNotes notes_on_averaged(std::vector<SeenCentre> seen, const ApartWords& wor
            words.what.substr(0, words.what.size() - 1) + "; " + words.remedy}};
 }
 
-/// Notes on feeds, of which rows are read where FEED says that any points beside its dish's axis.
+/// Notes on feeds. Rows are read only where FEED has a beam beside its dish's axis.
 FieldNotes notes_on_feeds_of(const ms_io::MeasurementSet& set, const ApartOptions& o) {
   ms_io::BeamRows rows;
   try {

@@ -47,7 +47,7 @@ namespace {
 
 /// One run of `misfit image`, from options to files: a list of channels, which is one for the whole band, or those of a cube.
 /// The steps are called in the order in which they stand here. All ranks make the one channel together, each with a part of the
-/// samples; of a cube's channels they make some each. The first puts them together, and writes.
+/// samples; of a cube's channels each rank makes some. The first rank puts them together, and writes.
 class ImageRun : private ChannelSink {
  public:
   ImageRun(const ImageOptions& options, const RunCall& call, const imager::Ranks& ranks)
@@ -184,7 +184,7 @@ class ImageRun : private ChannelSink {
     }
   }
 
-  /// What is wrong with masks and models is said at once.
+  /// Opens masks and models, so that their errors are reported at once.
   void open_clean() {
     for (const std::string& model : o_.clean.startmodel)
       require_same_target(model, *open_image_file(model, imager::Grids::any), *set_, names_of(o_.vis));
@@ -214,7 +214,7 @@ class ImageRun : private ChannelSink {
     return sampling_.axis;
   }
 
-  /// Channels of a cube may lie half a channel beyond the data's last.
+  /// Finds how far samples reach. Channels of a cube may lie half a channel beyond the data's last.
   void find_reach() {
     reach_ = sharing_.reach(*set_);
     double beyond = 0;
@@ -259,7 +259,7 @@ class ImageRun : private ChannelSink {
     report_.estimated_memory_bytes = plan_.memory.total();
   }
 
-  /// Of the one channel.
+  /// Plans the memory of the one channel.
   void plan_streaming(const RunScene& scene) {
     workers_ = {1, threads_};
     work_ = work_of(scene, plan_);
@@ -269,7 +269,7 @@ class ImageRun : private ChannelSink {
     queue_ = make_channel_queue(imager::alone(), {{0, 1}}, *this);
   }
 
-  /// Of a cube's.
+  /// Plans the memory of a cube's channels.
   void plan_batches(const RunScene& scene) {
     const ChannelBatches batches = tools::plan_batches(scene, plan_);
     batches_ = batches_of(channels(), batches);
@@ -331,7 +331,7 @@ class ImageRun : private ChannelSink {
         });
   }
 
-  /// On the disk: all are begun before the first is written.
+  /// The bytes of all images on the disk: all are begun before the first is written.
   std::uintmax_t bytes_of_images() const {
     const std::size_t pixel =
         pixel_format(o_.gridding.accuracy) == imager::PixelFormat::float64 ? sizeof(double) : sizeof(float);
@@ -339,7 +339,7 @@ class ImageRun : private ChannelSink {
     return (o_.outformat == "both" ? 2 : 1) * pixel * header_.geometry.pixels() * static_cast<std::size_t>(planes);
   }
 
-  /// From the density of all channels' samples together.
+  /// Weighs by the density of all channels' samples together.
   void weigh_in_common() {
     const imager::WeightingOptions options = weighting_options(o_.weighting, imager::pointings_of(mosaic_.request));
     if (!options.needs_density()) return;
@@ -354,7 +354,7 @@ class ImageRun : private ChannelSink {
     maker_->weigh_by(std::make_shared<imager::ImagingWeights>(density, options));
   }
 
-  /// Until there are no more, or the user stops: channels of a cube that are done by then stay.
+  /// Makes channels until there are no more, or the user stops: channels of a cube that are done by then stay.
   void make_channels() {
     try {
       while (!queue_->stopped()) {
@@ -370,7 +370,8 @@ class ImageRun : private ChannelSink {
     if (ranks_.first() && queue_->stopped() && report_.channels.empty()) throw Interrupted();
   }
 
-  /// As many at a time as there are workers. Rethrows what goes wrong with one, once all at work are over; Interrupted last.
+  /// Makes as many channels at a time as there are workers. Rethrows an exception of one once all at work have ended;
+  /// Interrupted comes last.
   void make(const imager::PlaneRange& batch) {
     imager::StageTimes reading;
     visibilities_->begin(batch, progress_, reading);
@@ -384,7 +385,7 @@ class ImageRun : private ChannelSink {
       try {
         make_group({batch.first + static_cast<int>(i), 1});  // each channel is cleaned alone
         if (cube()) progress_.update(++done, count);
-      } catch (const Interrupted&) {  // also one that gave up: what another threw comes before it
+      } catch (const Interrupted&) {  // also of a channel that gave up: the exception of another comes before it
         interrupted = true;
       } catch (...) {
         queue_->give_up();
@@ -412,7 +413,7 @@ class ImageRun : private ChannelSink {
   }
   bool states_went_at_first() const { return cube() && !ranks_.alone(); }
 
-  /// All of a channel that comes before CLEAN.
+  /// Makes all of a channel that comes before CLEAN.
   std::unique_ptr<ChannelRun> image(int channel) {
     imager::StageTimes taking;
     std::unique_ptr<ChannelSamples> samples;
@@ -428,7 +429,7 @@ class ImageRun : private ChannelSink {
     return run;
   }
 
-  /// All that comes after it.
+  /// Does all that comes after CLEAN.
   void finish(ChannelRun& run) {
     if (o_.check_outside) look_outside(run);
     if (run.has_samples() && visibilities_->each_reads()) visibilities_->count(run.samples().counts());
@@ -441,7 +442,7 @@ class ImageRun : private ChannelSink {
     queue_->done(std::move(run.made()));
   }
 
-  /// What --savemodel needs of what CLEAN found: models of what is predicted.
+  /// The models that --savemodel needs from CLEAN's results: images to predict.
   static std::vector<imager::CleanResult> models_of(std::vector<imager::CleanResult>&& cleaned,
                                                     const imager::Normalisation& by) {
     for (imager::CleanResult& result : cleaned) {
@@ -453,7 +454,7 @@ class ImageRun : private ChannelSink {
     return std::move(cleaned);
   }
 
-  /// Before CLEAN begins, which may take long.
+  /// Reports on the dirty image before CLEAN begins, which may take long.
   void tell_dirty(ChannelRun& run) {
     const imager::AccurateImages& made = run.images();
     plan_.gridding = made.plan;
@@ -462,13 +463,13 @@ class ImageRun : private ChannelSink {
     for (const imager::Decision& decision : run.report().decisions) report_.plan.push_back(decision);
   }
 
-  /// Those of what there is before CLEAN are drawn meanwhile.
+  /// Pictures of images before CLEAN are drawn while it runs.
   void begin_pictures(ChannelRun& run) {
     pictures_ = std::make_unique<RunPictures>(o_, header_, times_);
     pictures_->draw_dirty(run);
   }
 
-  /// What was read; samples that the pixel size cannot represent, and the pixel size that could.
+  /// Reports the samples read, those that the pixel size cannot represent, and the pixel size that could.
   void count_samples_of(ChannelRun& run) {
     const imager::SampleSums& sums = run.report().sums;
     report_.counts = run.samples().counts();
@@ -521,13 +522,13 @@ class ImageRun : private ChannelSink {
     cleaned_ = std::move(channel.cleaned);
   }
 
-  /// Of a part of the work, of which so many are done at a time.
+  /// Adds the times of a part of the work, of which `at_once` are done at a time.
   void add_times(const imager::StageTimes& times, int at_once) {
     const std::lock_guard lock(times_mutex_);
     for (const auto& [stage, seconds] : times.stages()) times_.add(stage, seconds / at_once);
   }
 
-  /// Each sample read once: what is left out for no reason is used.
+  /// Counts each sample read once: samples that are left out for no reason are used.
   void count_samples() {
     imager::SampleCounts& counts = report_.counts = visibilities_->counts();
     report_.outside_channels = visibilities_->outside_channels();
@@ -553,7 +554,7 @@ class ImageRun : private ChannelSink {
       for (const std::string& words : tally_.missing(channels())) warn(words);
   }
 
-  /// What several channels have in common.
+  /// Reports what several channels have in common.
   void tell_channels() {
     report_.plan.push_back(left_out_decision(report_.counts));
     if (const std::string warning = changed_files_warning(*set_); !warning.empty()) warn(warning);
@@ -624,7 +625,7 @@ class ImageRun : private ChannelSink {
   ProgressLine progress_;
   imager::Stopwatch watch_;
   imager::StageTimes times_;
-  std::mutex times_mutex_;  ///< of times_, while channels of other ranks come in
+  std::mutex times_mutex_;  ///< guards times_, while channels of other ranks come in
   ToldAsItGoes told_{progress_, times_, [this](const std::string& sentence) { warn(sentence); }};
   RunReport report_;
   Outcome outcome_;
@@ -654,7 +655,7 @@ class ImageRun : private ChannelSink {
   OutsideReport outside_;
   std::vector<imager::CleanResult> cleaned_;  ///< [Stokes], of the one channel, where --savemodel needs them
   ChannelTally tally_;
-  std::unique_ptr<ChannelQueue> queue_;  ///< last: its thread uses what stands before
+  std::unique_ptr<ChannelQueue> queue_;  ///< last: its thread uses the members above
 };
 
 }  // namespace

@@ -34,7 +34,7 @@ std::vector<std::string> all_names() {
   return names;
 }
 
-/// Those of this run.
+/// The names of this run's files.
 std::vector<std::string> own_names(const ImageOptions& o) {
   const bool cleaned = o.clean.runs();
   if (o.cube.is_cube()) return {"psf.png", cleaned ? "image.png" : "residual.png"};
@@ -83,7 +83,7 @@ void remove_cube_states(const ImageOptions& o, int first, std::vector<std::strin
     std::from_chars(name.data(), name.data() + name.size(), channel);
     if (state.extension() == ".state" && channel >= first && fs::remove(state, failed)) removed.push_back(state);
   }
-  if (fs::is_directory(fs::symlink_status(folder, failed))) fs::remove(folder, failed);  // where nothing is left in it
+  if (fs::is_directory(fs::symlink_status(folder, failed))) fs::remove(folder, failed);  // if it is empty
 }
 
 }  // namespace

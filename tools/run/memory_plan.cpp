@@ -14,7 +14,7 @@ std::string gib_text(double bytes) {
   return significant(bytes / gib, 3) + " GiB";
 }
 
-/// So many hundredths of a GiB as are enough, also for the run that is planned for them.
+/// A memory in hundredths of a GiB that is enough, also for the run that is planned for it.
 std::string enough_text(double bytes, const std::function<double(double)>& least_with) {
   double hundredths = std::ceil(bytes / gib * 100);
   for (int tries = 0; least_with && tries < 20; ++tries) {
@@ -41,7 +41,7 @@ double wanted_bytes(const ImageOptions& o, double machine_bytes) {
   return o.memory_gib > 0 ? o.memory_gib * gib : machine_bytes / 2;
 }
 
-/// The fastest that takes no more, or the one that takes least.
+/// The fastest streaming that fits in `wanted`, or the one that takes least.
 MemoryPlan streaming_within(double wanted, const imager::MemoryDemand& demand) {
   MemoryPlan plan;
   for (const imager::StreamingOptions streaming :

@@ -123,7 +123,7 @@ void save_model(const ImageOptions& o, const SavedModel& model, const imager::Ra
   column.origin = {"misfit image --savemodel modelcolumn --imagename " + shell_quoted(o.imagename),
                    fingerprint_of(model).value(), model.tell};
   ms_io::Selection selection = selection_of(o);
-  selection.sights = false;  // whoever writes tells them by ids of each set
+  selection.sights = false;  // the writer gives sights by ids of each set
   {
     const ms_io::MeasurementSet all(o.vis, selection, o.datacolumn, model.stokes);
     selection = all.selection();

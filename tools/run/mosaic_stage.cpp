@@ -19,14 +19,14 @@
 namespace misfit::tools {
 namespace {
 
-/// Beams follow between frequencies to this part of the accuracy; those that turn, which is done in steps, to less.
+/// The tolerance of beams between frequencies, from the accuracy; smaller for beams that turn, which they do in steps.
 double beam_tolerance(const ImageOptions& o, const std::vector<imager::Pattern>& patterns) {
   const bool turn = std::any_of(patterns.begin(), patterns.end(), [](const auto& p) { return p && !p->is_round(); });
   const double accuracy = o.gridding.accuracy > 0 ? o.gridding.accuracy : 1e-6;
   return (turn ? 0.01 : 0.1) * accuracy;
 }
 
-/// That some pointings see nothing of the image; else empty.
+/// A warning that some pointings see nothing of the image; else empty.
 std::string unseeing(const imager::MosaicBeams& beams, const std::vector<ms_io::FieldPointing>& pointings) {
   std::set<imager::Pattern> patterns(beams.rows().of_antennas().begin(), beams.rows().of_antennas().end());
   patterns.erase(nullptr);
@@ -62,7 +62,7 @@ std::vector<double> frequencies_of(const ms_io::MeasurementSet& set) {
   return all;
 }
 
-/// A pixel, and why it is that one.
+/// A pixel, and the reason for it.
 struct PsfPixel {
   int row = 0;
   int column = 0;
@@ -133,7 +133,7 @@ bool is_mosaic(const ImageOptions& o, const ms_io::MeasurementSet& set) {
     for (const ms_io::FieldPointing& one : rows.pointings)
       for (const ms_io::FieldPointing& other : rows.pointings)
         if (&one != &other && one.set == other.set && one.id == other.id) return false;  // it moves
-  } catch (const std::runtime_error&) {                                                  // what averaging tells of
+  } catch (const std::runtime_error&) {                                                  // averaging reports it
     return false;
   }
   return true;

@@ -14,7 +14,7 @@
 namespace misfit::tools {
 namespace {
 
-/// Whether the file that was opened still lies under its name: whoever held the lock before removes it.
+/// Whether the file that was opened still lies under its name: the last holder of the lock removes it.
 bool is_in_place(int file, const std::string& path) {
   struct stat opened = {};
   struct stat named = {};
@@ -22,7 +22,7 @@ bool is_in_place(int file, const std::string& path) {
          opened.st_dev == named.st_dev;
 }
 
-/// As the holder wrote it: "process 12 on host".
+/// The holder, as it wrote itself: "process 12 on host".
 std::string holder(int file) {
   std::array<char, 512> text{};
   const ssize_t size = pread(file, text.data(), text.size(), 0);

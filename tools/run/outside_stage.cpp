@@ -31,7 +31,7 @@ std::string noise_text(const OutsideReport& r) {
          " scatter";
 }
 
-/// Of flux that is in no source found; nothing where that is no matter.
+/// A sentence on flux that is in no source found; empty where it does not matter.
 std::string elsewhere_sentence(const OutsideReport& r) {
   if (!r.elsewhere && r.doubtful == 0) return "";
   const std::string sidelobes = std::to_string(r.doubtful) + (r.doubtful == 1 ? " that was" : " that were") +
@@ -46,7 +46,7 @@ std::string why_not_searched(const OutsideReport& r) {
   return "no usable sample lies within the |u| and |v| that pixels of " + angle(r.field.cell_rad) + " can represent";
 }
 
-/// Of the image's PSF, and beyond it of the wider field's, which knows what short baselines repeat.
+/// Sidelobes of the image's PSF, and beyond it of the wider field's PSF, which has the repeating lobes of short baselines.
 imager::Sidelobes sidelobes_of(const imager::Image& psf, const imager::WideSearch& search, const imager::ImageGeometry& image,
                                const imager::ImageGeometry& field) {
   imager::Sidelobes sidelobes(psf);
@@ -64,7 +64,7 @@ std::string place(const imager::OutsideSource& s, const OutsideReport& r) {
          (s.at_border ? ", at the border of the field searched or beyond it" : "");
 }
 
-/// Tells sources from what may be sidelobes, and those that matter from others.
+/// Separates sources from possible sidelobes, and sources that matter from others.
 void sort_out(const std::vector<imager::OutsideSource>& all, OutsideReport& r) {
   for (const imager::OutsideSource& s : all) {
     if (std::abs(s.source.flux_jy) < r.least_jy) {
@@ -78,7 +78,8 @@ void sort_out(const std::vector<imager::OutsideSource>& all, OutsideReport& r) {
   std::stable_sort(r.harmless.begin(), r.harmless.end(), brighter);
 }
 
-/// CLEAN leaves a hundredth or so of what it finds between pixels; three are something else.
+/// Whether there is flux elsewhere: CLEAN leaves about a hundredth of sources between pixels; three hundredths are something
+/// else.
 bool something_elsewhere(const imager::WideSearch& search) {
   double found_jy = 0;
   for (const imager::Component& c : search.components) found_jy += std::abs(c.flux_jy);

@@ -24,8 +24,8 @@ PhasedSet opened(const PhasedSetRequest& request, const ms_io::Selection& select
   return phased;
 }
 
-/// Where a list of directions states another frame than that of the phase centre, the set opened about a direction in that, to
-/// which visibilities are shifted as the frames lie at their time.
+/// Where a list of directions states another frame than the phase centre's, opens the set about a direction in the list's
+/// frame, to which visibilities are shifted as the frames lie at their time.
 PhasedSet in_frame_of_list(const PhasedSetRequest& request, PhasedSet phased, const std::string& list,
                            const imager::Ranks& ranks) {
   const imager::Observation& observation = phased.set->observation();
@@ -36,7 +36,7 @@ PhasedSet in_frame_of_list(const PhasedSetRequest& request, PhasedSet phased, co
   return {opened(request, selection, ranks).set, std::move(phased.remarks)};
 }
 
-/// Where phase centres are without a model's. What moves along has the field's own.
+/// The selection without a model's phase centre. A model that moves along has the field's own.
 ms_io::Selection usual_selection(const PhasedSetRequest& request, bool moves_along) {
   if (!request.phasecenter.empty()) return ms_io::phased_to(request.selection, request.phasecenter, {request.vis});
   ms_io::Selection selection = request.selection;

@@ -47,7 +47,8 @@ PrimaryBeamStage::PrimaryBeamStage(const TypedPrimaryBeam& o, BeamScene scene, i
   find_pointing();
 }
 
-/// All fields must point alike, to a thousandth of the beam: at its half-power points that changes it by 0.15%.
+/// Finds the pointing. All fields must point alike, to a thousandth of the beam: at its half-power points that changes it by
+/// 0.15%.
 void PrimaryBeamStage::find_pointing() {
   constexpr double beside = 0.01;
   width_rad_ = nominal_beam(scene_.frequency_hz).half_power_width_rad();

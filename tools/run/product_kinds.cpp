@@ -17,7 +17,7 @@ void add(std::vector<ProductKind>& kinds, const ProductKind& kind, int count, in
   }
 }
 
-/// Indices, and of three terms curvatures, for which casacore has no name of its own.
+/// Adds spectral indices and, for three terms, curvatures, for which casacore has no name of its own.
 void add_spectra(std::vector<ProductKind>& kinds, int terms, const std::string& end) {
   const auto add = [&](const std::string& name) {
     kinds.push_back(

@@ -18,19 +18,19 @@
 namespace misfit::tools {
 namespace {
 
-/// Whether it holds what CLEAN made.
+/// Whether CLEAN ran in a channel.
 bool cleaned(const ChannelReport& channel) {
   return channel.stokes.front().clean.has_value();
 }
 
-/// What the report of a cube tells of each channel: no more of the histogram than a glance gives.
+/// Fills in the numbers that a cube's report has of each channel, with the limits of the histogram alone.
 void look_at(const imager::Image& residual, const imager::Image* restored, double noise_jy, StokesReport& told) {
   const imager::ImageStatistics of_residual = imager::statistics_of(residual);
   told.histogram = {.noise_jy = noise_jy, .min_jy = of_residual.least, .max_jy = of_residual.largest, .count = {}};
   told.brightest = restored == nullptr ? imager::find_peak(residual, of_residual) : imager::find_peak(*restored);
 }
 
-/// What CLEAN found, on the sky. Components of a mosaic of flat noise have the sky times its primary beam.
+/// CLEAN's components as sources on the sky. Components of a mosaic of flat noise are the sky times its primary beam.
 std::vector<imager::Source> sources(const imager::ComponentModel& model, const imager::ImageGeometry& geometry,
                                     const imager::Image* primary_beam) {
   std::vector<imager::Source> sources;
@@ -94,9 +94,9 @@ std::vector<imager::HeaderCard> error_cards(const RunReport& report) {
 
 /// The primary beam of a channel; nothing where none is wanted.
 struct Products::OfBeam {
-  std::vector<imager::Image> terms;              ///< what of it is written [term]
-  std::optional<imager::TaylorBeam> of_terms{};  ///< by which several are corrected, unless all are by the same
-  bool divided_out = false;                      ///< whether images have the sky already
+  std::vector<imager::Image> terms;              ///< images of it that are written, [term]
+  std::optional<imager::TaylorBeam> of_terms{};  ///< corrects several terms, unless one beam corrects all
+  bool divided_out = false;                      ///< whether images are the sky already
 
   std::vector<imager::Image> corrected(const std::vector<const imager::Image*>& apparent) const {
     if (of_terms) return of_terms->corrected(apparent);
@@ -146,7 +146,7 @@ void Products::write(const std::string& kind, const imager::PlaneIndex& at, cons
   files_.at(kind).writer->write(at, image, beam);
 }
 
-/// Where there is such a file, and something to write.
+/// Writes a plane, if there is a file of this kind and something to write.
 void Products::put(const std::string& kind, const imager::PlaneIndex& at, const imager::Image& image,
                    const std::optional<imager::Beam>& beam) {
   const auto file = files_.find(kind);

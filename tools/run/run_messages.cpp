@@ -20,7 +20,7 @@ std::string beam_text(const imager::Beam& beam) {
          significant(beam.position_angle_rad * 180 / M_PI, 3) + "°";
 }
 
-/// With the one that WSClean would have, since people compare.
+/// The beam in words, with the one that WSClean would have, since people compare.
 std::string beam_line(const BeamChoice& beams) {
   return "beam " + beam_text(*beams.restoring) + (beams.quadrant ? "; by WSClean's rule " + beam_text(*beams.quadrant) : "") +
          "\n";

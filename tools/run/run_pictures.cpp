@@ -10,7 +10,7 @@
 namespace misfit::tools {
 namespace {
 
-/// Empty where gnuplot cannot draw it: the pictures say why.
+/// The drawing of a figure; empty where gnuplot cannot draw it: the pictures say why.
 std::string drawn(const Figure& figure) {
   try {
     return draw_svg(figure);

@@ -26,14 +26,14 @@
 namespace misfit::tools {
 namespace {
 
-/// Planes that a run writes of one channel, but for masks.
+/// The planes that a run writes of one channel, except masks.
 int written_images(const ImageOptions& o, int stokes) {
   ProductChoice choice = ProductChoice::of(o);
   choice.masked = false;
   return product_planes(choice, stokes);
 }
 
-/// Those among them that there are for the primary beam.
+/// The planes among them for the primary beam.
 int beam_images(const ImageOptions& o, int stokes) {
   ProductChoice choice = ProductChoice::of(o), without = choice;
   without.primary_beam = without.corrected = false;
@@ -85,21 +85,21 @@ class RunPlanner {
     return imager::scales_looked_at({deconvolver_choice(o_.clean, 1).scale_pixels});
   }
 
-  /// How much of the PSF minor cycles subtract.
+  /// Decides how much of the PSF minor cycles subtract.
   void decide_psf_patch() {
     decide("PSF patch", "none, the whole PSF",
            "components are taken off bright pixels alone, of which there are few; at the threshold, off all");
   }
 
-  /// How exactly major cycles subtract.
+  /// Decides how exactly major cycles subtract.
   void decide_residuals() {
     if (!imager::may_be_coarser(plan_.gridding)) return;
     decide("residuals", "the last to " + significant(o_.gridding.accuracy, 3) + ", those before as exactly as is needed",
            "their errors are at most a fiftieth of the depth to which components are then found; the report has each accuracy");
   }
 
-  /// A search outside shares the memory. Ranks whose plans differed would not exchange the same: all gather as many samples as
-  /// the one with the least room.
+  /// Plans the gridding. A search outside shares the memory. Ranks with different plans would not exchange alike: all gather as
+  /// many samples as the rank with the least room.
   imager::GriddingPlan plan_gridding(imager::GriddingRequest request) const {
     if (o_.check_outside) return imager::plan_gridding(request);
     imager::GriddingPlan plan = plan_with_room(
@@ -149,7 +149,7 @@ class RunPlanner {
     progress_.say(".alpha is the spectral index " + seen + "; " + sky);
   }
 
-  /// Of sources outside, by what is known before a visibility is read.
+  /// Plans the search for sources outside, before a visibility is read.
   void plan_search(const imager::GriddingRequest& request) {
     imager::WideFieldFinder finder(scene_.geometry);
     scene_.set.visit_coordinates([&](const imager::SampleCoordinates& some) { finder.add(some); });
@@ -181,7 +181,7 @@ class RunPlanner {
             .wider = wider};
   }
 
-  /// What the run takes at least where it is planned for so many bytes.
+  /// The least bytes that the run takes when it is planned for `bytes`.
   double least_memory(imager::GriddingRequest request, double bytes) const {
     limit_memory(bytes, request);
     std::optional<imager::WiderDemand> wider;

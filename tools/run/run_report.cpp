@@ -15,7 +15,7 @@ using nlohmann::json;
 
 constexpr double arcsec = std::numbers::pi / 180 / 3600;
 
-/// JSON has no number for what is not finite.
+/// A number as JSON, which has none that is not finite.
 json number(double value) {
   return std::isfinite(value) ? json(value) : json();
 }
@@ -68,7 +68,7 @@ json error_json(double asked, const ChannelReport& plane, const StokesReport& of
   return error;
 }
 
-/// What is not known is null.
+/// The noises; unknown ones are null.
 json noise_json(const ChannelReport& plane, const StokesReport& of) {
   const auto known = [](double noise_jy) { return noise_jy > 0 ? number(noise_jy) : json(); };
   return {{"predicted_jy", known(plane.predicted_noise_jy)}, {"measured_jy", known(of.histogram.noise_jy)}};
@@ -89,7 +89,7 @@ json restoring_json(const std::optional<BeamChoice>& beams) {
   return beam;
 }
 
-/// Null where no residual made it.
+/// The extension of a mask; null where no residual extended it.
 json extension_json(const imager::MaskExtension& masked) {
   if (masked.threshold_jy == 0) return nullptr;
   return {{"threshold_jy", number(masked.threshold_jy)},
@@ -145,7 +145,7 @@ json stokes_json(double asked, const ChannelReport& plane) {
   return list;
 }
 
-/// Of a cube; null where there is one plane, of the whole band.
+/// The spectral axis of a cube; null where there is one plane, of the whole band.
 json spectral_json(const std::optional<imager::SpectralAxis>& axis) {
   if (!axis) return nullptr;
   return {{"frame", axis->frame},

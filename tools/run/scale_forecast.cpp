@@ -25,7 +25,7 @@ int levels_of(int nodes) {
   return levels;
 }
 
-/// By whom a stage's work is done.
+/// The part of a node's seconds that a stage's work belongs to.
 double& part_of(NodeSeconds& seconds, const std::string& stage) {
   if (stage == imager::stage::read) return seconds.read;
   if (stage == imager::stage::fft) return seconds.fft;
@@ -63,7 +63,7 @@ std::string column(const std::string& text, int width) {
 
 }  // namespace
 
-/// The image in so many facets, each planned for itself.
+/// The image in facets, each planned for itself.
 class ScaleForecast::Facets {
  public:
   Facets(const imager::GriddingRequest& whole, int along_a_side) : count(along_a_side * along_a_side) {
@@ -88,7 +88,7 @@ RunWork ScaleForecast::work_of_a_node(int nodes) const {
   return work;
 }
 
-/// A second cycle, which has no part in what is done once after the last.
+/// The seconds of a second cycle, which has no part in work that is done once after the last.
 NodeSeconds ScaleForecast::cycle_seconds(const RunWork& work) const {
   const int components = components_of_a_cycle(scene_.options);
   return seconds_of(with_cycles(work, 2, components)) - seconds_of(with_cycles(work, 1, components));
@@ -104,7 +104,7 @@ double ScaleForecast::taking_in_seconds(double bytes) const {
   return bytes * (1 / (scene_.options.scale.network_bytes_s()) + 1 / added_bytes_s);
 }
 
-/// The first piece passes all nodes, and the others follow.
+/// The seconds of a sum along nodes: the first piece passes all nodes, and the others follow.
 double ScaleForecast::sum_seconds(int nodes, double bytes) const {
   if (nodes == 1) return 0;
   if (!imager::pass_along_ranks(nodes, static_cast<std::size_t>(bytes) / sizeof(double))) return tree_seconds(nodes, bytes);
@@ -112,7 +112,7 @@ double ScaleForecast::sum_seconds(int nodes, double bytes) const {
   return taking_in_seconds(bytes + (nodes - 2) * piece);
 }
 
-/// What the same would take in a binomial tree, where rank 0 takes in a whole image from each of its branches.
+/// The seconds of the sum in a binomial tree, where rank 0 takes in a whole image from each of its branches.
 double ScaleForecast::tree_seconds(int nodes, double bytes) const {
   return levels_of(nodes) * taking_in_seconds(bytes);
 }
@@ -152,7 +152,7 @@ NodeForecast ScaleForecast::at(int nodes) const {
   return node;
 }
 
-/// Planes wait for no others, but rank 0 gets and writes all.
+/// The forecast of a cube. Planes wait for no others, but rank 0 gets and writes all.
 NodeForecast ScaleForecast::channel_forecast(int nodes) const {
   const int channels = (scene_.channels + nodes - 1) / nodes;
   RunWork work = work_;
@@ -205,7 +205,7 @@ NodeForecast ScaleForecast::facet_forecast(int nodes, const Facets& facets) cons
   share(node.cycle, cycle, rows.cycle_bytes);
   node.cycle.gridding += turned_s;
   node.cycle.read = cycle.read;
-  // What the facets' models add up to, at each sample; and the model, which is of the whole image.
+  // The sums of the facets' models at each sample; and the model, which is of the whole image.
   const double sums = 2.0 * (facets.count - 1) / facets.count;
   node.cycle.exchange += sums * samples * sizeof(std::complex<double>) / network;
   node.memory_bytes = std::max(2 * all_images, node.memory_bytes);

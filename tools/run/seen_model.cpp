@@ -35,7 +35,7 @@ std::vector<imager::AxisFrame> frames_of(const std::vector<ms_io::FieldPointing>
   return frames;
 }
 
-/// What a prediction through beams needs as long as it is asked.
+/// The data that a prediction through beams needs as long as it is used.
 struct SeenPlanes {
   std::array<imager::Image, 4> plane;
   imager::PlannedTransform transform;

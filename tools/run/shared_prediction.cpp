@@ -9,7 +9,7 @@
 
 #include "tools/base/packed.h"
 
-// The members of what is sent, in their order. cereal finds these functions by the types' namespaces.
+// The members that are sent, in their order. cereal finds these functions by the types' namespaces.
 
 namespace misfit::imager {
 
@@ -59,13 +59,13 @@ void load(Archive& archive, StokesVisibilities& visibilities) {
 
 namespace misfit::tools {
 
-/// Which ranks have nothing to do.
+/// The ranks that have nothing to do.
 class SharedPrediction::FreeRanks {
  public:
   explicit FreeRanks(int size) {
     for (int rank = 0; rank < size; ++rank) free_.push_back(rank);
   }
-  /// One of them, which is waited for, and is free again at the end of this.
+  /// A free rank, which is waited for, and is free again when this ends.
   struct Turn {
     explicit Turn(FreeRanks& all) : from(all), rank(all.take()) {}
     ~Turn() { from.give_back(rank); }

@@ -21,7 +21,7 @@ std::string parts_text(const ms_io::SampleSharing& sharing) {
   return sharing.sets < sharing.samples.size() ? "a set each, as far as there are some" : "whole sets each";
 }
 
-/// What another rank has that rank 0 has not, in words; empty where they agree.
+/// The option in which another rank differs from rank 0, in words; empty where they agree.
 std::string unlike_option(const nlohmann::json& first, const nlohmann::json& others, std::size_t rank) {
   const std::set<std::string> own{"threads", "memory", "quiet"};
   for (const auto& [name, value] : others.items())

@@ -89,7 +89,7 @@ imager::Plan TakenFiles::decisions() const {
   return decisions;
 }
 
-/// Of these Stokes parameters, whose values are all there.
+/// Reads the planes of these Stokes parameters, whose values must all be there.
 std::vector<imager::Image> TakenFiles::planes(const std::string& path, int channel,
                                               const std::vector<imager::Stokes>& stokes) const {
   const auto file = opened(path);

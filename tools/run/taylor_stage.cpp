@@ -19,7 +19,7 @@ void TaylorStage::make_images(const imager::ImagedData& imaged, const imager::Ac
   basis_ = imager::basis_of(psf_);
 }
 
-/// Puts images that are taken into the place of their pixels. An image of x^k has the errors of one of |x|^k.
+/// Replaces compared pixels by the images that are taken. An image of x^k has the errors of an image of |x|^k.
 void TaylorStage::take(TakenTerms taken, const imager::ComparedPixels& pixels, const imager::AccurateImages& made) {
   const imager::GriddingRequest& request = made.plan.request;
   const auto middle = [](const imager::Image& image) { return image.at(image.height / 2, image.width / 2); };

@@ -24,7 +24,7 @@ bool has(const json& object, const char* name, const json& value) {
   return object.is_object() && object.contains(name) && object[name] == value;
 }
 
-/// Seconds of one core to those of all: two cores do 1.8 times as much as one, as measured.
+/// Turns seconds of one core into seconds of `threads`: two cores do 1.8 times as much as one, as measured.
 double shared(double seconds, int threads) {
   return seconds / std::pow(static_cast<double>(threads), 0.85);
 }
@@ -40,7 +40,7 @@ struct TransformSeconds {
   double fft = 0;
 };
 
-/// What is made in a pass.
+/// The images made in a pass.
 struct Images {
   int stokes = 1;  ///< or Taylor terms; 0: a PSF alone
   bool psf = false;
@@ -70,13 +70,13 @@ TransformSeconds transform_seconds(const imager::GriddingPlan& plan, const Image
   return {shared(model.gridding_seconds(work) + cells * fft_s, threads), shared(fft_s, threads)};
 }
 
-/// A part of the names of factors.
+/// The size of a run, a part of the names of factors.
 std::string size_of(const RunWork& w) {
   const auto power = [](double count) { return std::to_string(std::lround(std::log2(std::max(count, 1.0)))); };
   return ", 2^" + power(w.samples) + " samples, 2^" + power(w.pixels) + " pixels";
 }
 
-/// How unlike the sizes are that two such parts of names tell of, in powers of two; none where one of them is no such part.
+/// The difference of two sizes in names of factors, in powers of two; none where one of them is no size.
 std::optional<int> between_sizes(const std::string& one, const std::string& other) {
   int samples[2], pixels[2];
   for (const int i : {0, 1})
@@ -86,10 +86,10 @@ std::optional<int> between_sizes(const std::string& one, const std::string& othe
 
 constexpr int most_runs = 8;  ///< that count
 
-/// Changes with what is counted: factors between seconds and other counts say nothing.
+/// To be changed when counts change: factors of seconds over other counts say nothing.
 constexpr int count_version = 4;
 
-constexpr double direct_term_s = 0.5e-9;  ///< measured, in vectors; CostModel's decides what is summed directly, and is wary
+constexpr double direct_term_s = 0.5e-9;  ///< measured, in vectors; CostModel's, which decides on direct sums, is cautious
 
 /// A pass that images: the first makes the PSF and all Stokes parameters, others all Taylor terms.
 void add_pass(const RunWork& w, bool with_psf, double times, std::vector<StageSeconds>& stages) {
@@ -169,7 +169,7 @@ double wider_seconds(const RunWork& w) {
   return total_seconds(stages) + minor_seconds(wider) + taper_s * w.samples * (2 * wider.major_cycles);
 }
 
-/// As many images as there are channels, of a part of the samples each, drawn once.
+/// The seconds of a cube: an image for each channel, of a part of the samples each, drawn once.
 std::vector<StageSeconds> cube_seconds(const RunWork& w) {
   RunWork channel = w;
   channel.channels = 1;

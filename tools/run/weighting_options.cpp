@@ -111,7 +111,7 @@ std::string taper_text(const TypedWeighting& o) {
   return said;
 }
 
-/// What is done with the weights of the data beside weighing them by density.
+/// The words on taper and window, besides weighing by density.
 std::string taper_reason(const TypedWeighting& o) {
   std::string said = o.uvtaper.empty() ? "" : " times a Gaussian";
   if (!o.minuv_l.empty() || !o.maxuv_l.empty()) said += ", 0 outside the limits in the uv plane";
@@ -125,7 +125,7 @@ std::string cells_text(const imager::ImageGeometry& geometry) {
          significant(cells.width_lambda(), 3) + " × " + significant(cells.height_lambda(), 3) + " λ";
 }
 
-/// By what the weight of a sample is divided.
+/// The divisor of a sample's weight, in words.
 std::string divisor_text(const TypedWeighting& o) {
   if (o.scheme == "uniform") return "divided by the weight of all samples and conjugates in the cell";
   if (o.scheme == "briggs") return "divided by 1 + f² times the weight of all samples and conjugates in the cell";
@@ -256,7 +256,7 @@ imager::WeightingOptions weighting_options(const TypedWeighting& o, std::size_t 
   return options;
 }
 
-/// Between the middles of the outermost planes, as CASA has it.
+/// The bandwidth is taken between the middles of the outermost planes, as in CASA.
 imager::WeightingOptions weighting_options(const TypedWeighting& o, const imager::SpectralAxis& cube, std::size_t pointings) {
   imager::WeightingOptions options = weighting_options(o, pointings);
   const double first = cube.frequency_hz(0), last = cube.frequency_hz(cube.channels - 1);

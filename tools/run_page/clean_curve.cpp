@@ -109,7 +109,7 @@ std::string dots(const std::vector<CurvePoint>& points, const Scale& x, const Sc
   return marks;
 }
 
-/// The lines of a grid, with what `label` says of each.
+/// The lines of a grid, each with its `label`.
 std::string horizontal_grid(const Scale& y, const std::vector<double>& values,
                             const std::function<std::string(double value)>& label) {
   std::string grid;

@@ -17,7 +17,7 @@ using html::Row;
 using html::tag;
 using nlohmann::json;
 
-/// The list of states, the first of them that before all cycles.
+/// The list of states; the first is the state before all cycles.
 const json& log_of(const json& clean) {
   static const json none = json::array();
   const json& log = member(clean, "major_cycles_log");
@@ -35,8 +35,8 @@ std::vector<double> magnitudes(const json& log, const std::vector<const char*>& 
   return values;
 }
 
-/// One unit for residuals, noise and depths, so that they compare at a glance: that of their geometric mean, since they fall by
-/// orders of magnitude.
+/// One unit for residuals, noise and depths, so that they compare at a glance: it suits their geometric mean, since they fall
+/// by orders of magnitude.
 ScaledUnit residual_unit(const json& log) {
   double logarithms = 0;
   const std::vector<double> values = magnitudes(log, {"peak_residual_jy", "rms_jy"});

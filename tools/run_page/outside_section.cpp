@@ -22,7 +22,7 @@ std::string text(const json& object, const char* key) {
   return value.is_string() ? value.get<std::string>() : "";
 }
 
-/// Of the largest number under `key`, so that all rows compare at a glance.
+/// The unit for the largest number under `key`, so that all rows compare at a glance.
 ScaledUnit unit_of(const json& sources, const char* key, const std::string& base) {
   double largest = 0;
   for (const json& source : sources) largest = std::fmax(largest, std::abs(number(source, key)));

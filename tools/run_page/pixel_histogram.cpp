@@ -18,9 +18,9 @@ constexpr int most_sigma = 10;
 constexpr int least_sigma = 5;
 constexpr int half = bins_a_sigma * most_sigma;  ///< bins to either side of 0
 
-constexpr std::size_t bins = 2 * half + 2;  ///< the outermost two are those of pixels beyond
+constexpr std::size_t bins = 2 * half + 2;  ///< the outermost two are for pixels beyond
 
-/// What some of the pixels add; NaN does not count.
+/// The counts of some of the pixels; NaN does not count.
 struct Tally {
   double min = HUGE_VAL;
   double max = -HUGE_VAL;
@@ -30,7 +30,7 @@ struct Tally {
   void add(const double* pixel, std::size_t pixels, double bins_a_jy) {
     constexpr std::size_t lanes = 8;
     double low[lanes], high[lanes];
-    std::uint32_t counted[lanes][bins] = {}, absent[lanes] = {};  // what is absent lies in the first bin
+    std::uint32_t counted[lanes][bins] = {}, absent[lanes] = {};  // absent pixels lie in the first bin
     std::fill_n(low, lanes, min);
     std::fill_n(high, lanes, max);
     const auto add_one = [&](double value, std::size_t lane) {

@@ -67,7 +67,7 @@ std::string image_text(const json& options) {
   return text.empty() ? not_measured : text + " pixels" + (cell.is_null() ? "" : tag("small", "of " + plain(cell)));
 }
 
-/// The error against the direct transform: measured where it was, else expected, and whether it keeps what was asked.
+/// The error against the direct transform: measured, or else expected, and whether it keeps the accuracy asked.
 std::string accuracy_text(const json& error) {
   const json& requested = member(error, "requested");
   const bool measured = member(error, "measured_rms").is_number();
@@ -117,7 +117,7 @@ std::string warnings(const json& list) {
   return content.empty() ? "" : tag("aside", content);
 }
 
-/// What the histogram shows, in numbers.
+/// The numbers of the histogram.
 std::string histogram_caption(const json& histogram, bool cleaned) {
   const json& noise = member(histogram, "noise_jy");
   const json& pixels = member(histogram, "pixels");
@@ -187,7 +187,7 @@ std::string left_out(const json& visibilities) {
                 row("outside the grid", "outside_grid"), row("used", "used")});
 }
 
-/// A row for each where there are several.
+/// A row for each Stokes parameter where there are several.
 std::string stokes_section(const json& list) {
   if (!list.is_array() || list.size() < 2) return "";
   std::vector<Row> rows;

@@ -25,7 +25,7 @@ struct Stage {
   std::size_t shade = 0;
 };
 
-/// The style has colours for so many stages; the last is for all that are shorter.
+/// The style has colours for so many stages; the last is for all shorter ones.
 constexpr std::size_t shades = 8;
 
 std::string expected_of(const json& expected, const std::string& name) {
@@ -33,7 +33,7 @@ std::string expected_of(const json& expected, const std::string& name) {
   return seconds.is_number() ? duration(seconds.get<double>()) : "";
 }
 
-/// Those of `measured`, and those that only were expected; null has none.
+/// The stages of `measured`, and stages that were only expected; null has none.
 std::vector<Stage> stages_of(const json& measured, const json& expected) {
   std::vector<Stage> stages;
   for (const auto& [name, seconds] : measured.items())

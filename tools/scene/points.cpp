@@ -22,7 +22,7 @@ void add_plans(const std::vector<std::string>& kernels, std::vector<ScenePoint>&
     for (const std::string& kernel : kernels) points.push_back({.kernel = kernel, .accuracy = accuracy});
 }
 
-/// Precisions that say something: single where a kernel of this width may still be what limits, double where it need not be.
+/// Adds points in the precisions that matter: single where a kernel of this width may limit the error, double where single may.
 void add_grid(const std::string& kernel, int width, double padding, std::vector<ScenePoint>& points) {
   constexpr int widest_in_single = 8;
   constexpr int narrowest_in_double = 7;

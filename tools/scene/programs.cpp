@@ -31,7 +31,7 @@ constexpr const char* model_file = "sky-model.fits";
 struct Program {
   ProgramResult result;
   std::string image;                 ///< the file with the dirty image
-  std::vector<std::string> predict;  ///< what writes the model's visibilities into the copy of the set
+  std::vector<std::string> predict;  ///< the command that writes the model's visibilities into the copy of the set
 };
 
 Program misfit(const ImageOptions& scene, const std::string& accuracy, int threads) {
@@ -112,7 +112,7 @@ std::string in_a_line(const std::vector<std::string>& words) {
   return line;
 }
 
-/// Whether the program did what it was called for; if not, its result says why.
+/// Runs a program, and returns whether it succeeded; if not, its result says why.
 bool run_in(const WorkFolder& folder, std::vector<std::string> words, ProgramResult& result) {
   if (words.front() == "misfit") words.front() = fs::read_symlink("/proc/self/exe").string();
   const std::optional<int> status = run_program(words, folder.path(), OnInterrupt::stop);
@@ -137,7 +137,7 @@ void run_once(Program& program, const std::vector<std::string>& vis, const Scene
     program.result.errors = truth.errors_of(imager::read_fits(folder.path() / program.image).image);
 }
 
-/// Empty where it can be given the same samples.
+/// The reason why WSClean cannot be given the same samples; empty where it can.
 std::string why_not_wsclean(const ImageOptions& scene) {
   if (!words_of(scene.selection).empty()) return "it selects in a way of its own, and might take other samples";
   if (!scene.phasecenter.empty()) return "it is not given --phasecenter";
@@ -161,14 +161,14 @@ std::uintmax_t bytes_of(const fs::path& folder) {
   return bytes;
 }
 
-/// When to begin no more.
+/// The time after which no run is begun.
 struct Limit {
   double seconds = HUGE_VAL;
   imager::Stopwatch watch{};
   bool reached() const { return watch.seconds() > seconds; }
 };
 
-/// Of all programs in turn, into one copy of the set.
+/// Compares the predictions of all programs in turn, into one copy of the set.
 void compare_predictions(const ImageOptions& scene, const SceneTruth& truth, const Limit& limit,
                          std::vector<Program>& programs) {
   const WorkFolder folder(fs::temp_directory_path());

@@ -62,7 +62,7 @@ constexpr Member<PointResult, std::string> result_words[] = {
     {"work", &PointResult::work},
 };
 
-/// JSON has no number for what is not finite.
+/// A number as JSON, which has none that is not finite.
 json json_of(double value) {
   return std::isfinite(value) ? json(value) : json();
 }
@@ -119,7 +119,7 @@ void take_result(const json& value, PointResult& r) {
   }
 }
 
-/// Names of what the two do not have in common: "version, threads".
+/// The names of members in which the two differ: "version, threads".
 std::string differences(const json& has, const json& expected) {
   std::set<std::string> all;
   for (const json* of : {&has, &expected})

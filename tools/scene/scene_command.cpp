@@ -26,7 +26,7 @@ struct Options {
   std::string output;
 };
 
-/// Of columns that are named, one for all sets or one for each.
+/// The columns that are named, one for all sets or one for each.
 std::vector<ms_io::DataColumn> named_columns_of(const ImageOptions& scene) {
   const std::vector<std::string_view> names = split_at_commas(scene.datacolumn);
   std::vector<ms_io::DataColumn> columns;
@@ -35,7 +35,7 @@ std::vector<ms_io::DataColumn> named_columns_of(const ImageOptions& scene) {
   return columns;
 }
 
-/// The values that are given.
+/// Checks the values that are given.
 void check_values(const Options& o) {
   check(o.report.scene);
   if (o.report.scene.makes_mosaic())

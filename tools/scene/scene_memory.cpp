@@ -15,7 +15,7 @@
 namespace misfit::tools {
 namespace {
 
-/// Rounded up, so that so much is enough.
+/// The bytes in GiB, rounded up, so that they are enough.
 std::string gib_text(double bytes) {
   return significant(std::ceil(bytes / gib * 100) / 100, 6) + " GiB";
 }

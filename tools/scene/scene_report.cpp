@@ -35,7 +35,7 @@ std::vector<std::string> absolute(std::vector<std::string> paths) {
   return paths;
 }
 
-/// What measurements belong to, named as people know it: the samples, the image, and who measured.
+/// The owner of measurements, in names that people know: the samples, the image, the program's version and its threads.
 json owner_of(const SceneReportOptions& o, const Scene& scene) {
   const ImageOptions& s = o.scene;
   return {{"version", MISFIT_VERSION},
@@ -54,7 +54,7 @@ json owner_of(const SceneReportOptions& o, const Scene& scene) {
           {"files of kernels", kernel_files(o)}};
 }
 
-/// How much is run of all points by turns.
+/// The effort for all points, run by turns.
 struct Effort {
   std::size_t least_rounds;
   std::size_t most_rounds;
@@ -70,7 +70,7 @@ struct Effort {
         first_round_s(o.quick ? 0.4 * seconds : HUGE_VAL) {}
 };
 
-/// Of the first run of each point.
+/// The seconds of the first run of each point.
 double first_round_seconds(const std::vector<PointResult>& results) {
   double seconds = 0;
   for (const PointResult& r : results)
@@ -84,7 +84,7 @@ std::size_t rounds_within(const Effort& effort, const std::vector<PointResult>& 
       std::clamp(possible, static_cast<double>(effort.least_rounds), static_cast<double>(effort.most_rounds)));
 }
 
-/// What an earlier run kept of the same measurements, in `results`; the number of its runs. What is of no use is put aside.
+/// Fills `results` with the same measurements of an earlier run; returns the number of its runs. A useless file is put aside.
 std::size_t resume(const std::string& path, const json& owner, std::vector<PointResult>& results, ProgressLine& progress) {
   const FoundResults found = read_results(path, owner, results);
   if (found.runs > 0) progress.say("going on from " + grouped(static_cast<long long>(found.runs)) + " runs in " + path);
@@ -95,7 +95,7 @@ std::size_t resume(const std::string& path, const json& owner, std::vector<Point
   return 0;
 }
 
-/// One that no run is of.
+/// The number of a stretch that no run has.
 int unused_stretch(const std::vector<PointResult>& results) {
   int unused = 0;
   for (const PointResult& r : results)
@@ -103,7 +103,7 @@ int unused_stretch(const std::vector<PointResult>& results) {
   return unused;
 }
 
-/// At first as they are, and then at random, so that no two points always meet the machine as it is at one time.
+/// The points in the order of a round: at first as they are, later at random, so that no two points always run at one time.
 std::vector<PointResult*> in_order_of(std::size_t round, std::vector<PointResult>& results) {
   std::vector<PointResult*> order;
   for (PointResult& result : results) order.push_back(&result);

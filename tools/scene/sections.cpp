@@ -37,7 +37,7 @@ std::vector<Series> scatter(const std::vector<PointResult>& results, const std::
   return series;
 }
 
-/// Where on the front, the quickest first.
+/// The results on the front, the quickest first.
 std::vector<std::size_t> along_front(const std::vector<CostAndError>& costs) {
   const std::vector<bool> front = pareto_front(costs);
   std::vector<std::size_t> order;

@@ -9,7 +9,7 @@ namespace misfit::tools {
 namespace {
 
 constexpr std::size_t fewest_runs = 3;  ///< that say how slow a stretch was
-constexpr int turns = 40;               ///< each halves about what stretches without a point in common still lack
+constexpr int turns = 40;               ///< each about halves the error of stretches without a point in common
 
 std::vector<double> seconds_of(const PointResult& result, double (SceneSeconds::*of)() const) {
   std::vector<double> values;
@@ -21,7 +21,7 @@ double whole(const SceneSeconds& run) {
   return run.image() + run.predict();
 }
 
-/// Of a result alone.
+/// The noise of a result by its own runs.
 double own_noise(const PointResult& result, double (SceneSeconds::*seconds)() const) {
   std::vector<double> deviation = seconds_of(result, seconds);
   const double middle = median(deviation);

@@ -37,7 +37,7 @@ struct Tally {
   }
 };
 
-/// Standard error of a root, as a part of it: half that of what it is the root of.
+/// Relative standard error of a root: half the relative error of its square.
 double noise_of_root(double square, double variance) {
   return square > 0 ? std::sqrt(variance) / square / 2 : 0;
 }

@@ -15,8 +15,8 @@ bool is_ours(const PointResult& r) {
   return r.point.kernel == "least-misfit" || r.point.kernel == "minimax";
 }
 
-/// "kaiser-bessel of width 6 at 2·10⁻⁵, where …": the quickest of our points as exact but for noise, and how much longer it
-/// takes.
+/// "kaiser-bessel of width 6 at 2·10⁻⁵, where …": with the quickest of our points that is as exact, within noise, and how much
+/// longer it takes.
 std::string words_on(std::size_t other, const std::vector<PointResult>& results, const std::vector<CostAndError>& costs) {
   const PointResult& r = results[other];
   const CostAndError& its = costs[other];

@@ -29,7 +29,7 @@ class PointError {
   double square(double t, double off = 0) const {
     return mean([&](Eigen::Index i) { return turn(i, t + off) - image(i, t); });
   }
-  /// The difference that it makes on which side of a cell's boundary a visibility is gridded.
+  /// The squared difference between gridding a visibility on either side of a cell's boundary.
   double square_of_jump() const {
     return mean([&](Eigen::Index i) { return turn(i, 1) * image(i, -0.5) - image(i, 0.5); });
   }
@@ -69,7 +69,7 @@ double largest_jump(const kernels::PiecewisePolynomial& kernel) {
   return inner == 0 ? 0 : (before.tail(inner) - after.head(inner)).cwiseAbs().maxCoeff();
 }
 
-/// What the table says of one width.
+/// The numbers of the table for one width.
 struct BoundaryErrors {
   double rms = 0;  ///< √E
   double on_grid = 0;

@@ -21,7 +21,7 @@ const std::vector<int> widths{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15,
 const std::vector<double> fractions{0.01, 0.03, 0.1, 0.2, 0.25, 0.3, 0.4, 0.45, 0.47, 0.49};
 const std::vector<double> quick_fractions{0.01, 0.25, 0.49};
 
-/// The x0 that there are, in their order.
+/// All x0 of the losses, in order.
 std::vector<double> fractions_of(const std::vector<RoundingLoss>& losses) {
   std::vector<double> found;
   for (const RoundingLoss& l : losses)

@@ -8,7 +8,7 @@
 namespace misfit::tools {
 namespace {
 
-/// The same samples elsewhere: place(u, v, row) changes them.
+/// The samples at other places: place(u, v, row) changes u and v.
 template <typename Place>
 imager::VisibilityBlock moved(const StabilityData& data, const Place& place) {
   imager::VisibilityBlock block = data.block;

@@ -14,7 +14,7 @@ imager::ImageGeometry field_at(double dec_rad, double cell_rad) {
   return {stability_pixels, stability_pixels, cell_rad, {1.2, dec_rad}, {}};
 }
 
-/// The farthest, in pixels, that any pixel is from itself after the way to the sky and back.
+/// The largest error, in pixels, of a pixel's way to the sky and back.
 double round_trip(const imager::ImageGeometry& geometry) {
   double farthest = 0;
   for (int row = 0; row < geometry.height; ++row)

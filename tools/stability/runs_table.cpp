@@ -12,7 +12,7 @@ std::string statement(const StabilityOutcome& o) {
   return o.honest() ? "kept" : "broken";
 }
 
-/// Where it was cut, of how many it was given; and which model was kept, if an earlier one left less.
+/// The words on a CLEAN that was cut at its limit of components; and on the model that was kept, if an earlier one left less.
 std::string cut(const StabilityOutcome& o) {
   const imager::CleanReport& clean = o.clean;
   const bool earlier = clean.kept + 1 != clean.cycles.size();

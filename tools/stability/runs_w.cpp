@@ -12,7 +12,7 @@
 namespace misfit::tools {
 namespace {
 
-/// Far from the phase centre n − 1 is large while it hardly bends over the image: few planes, and long phases.
+/// An image far from the phase centre, where n − 1 is large but hardly bends over the image: few planes, and long phases.
 imager::ImageGeometry far_field(const StabilityData& data) {
   return {stability_pixels, stability_pixels, data.cell_rad(), {}, {0.3, -0.2}};
 }
@@ -23,7 +23,7 @@ std::vector<double> decades(double most_w) {
   return all;
 }
 
-/// Of u and v at most, in a field off the phase centre.
+/// The largest turns of u and v, in a field off the phase centre.
 double offset_turns(const imager::ImageGeometry& geometry) {
   return (std::abs(geometry.centre.l) + std::abs(geometry.centre.m)) / (2 * geometry.cell_rad);
 }
@@ -32,7 +32,7 @@ double turns(double w, const imager::ImageGeometry& geometry) {
   return w * imager::largest_drop(geometry) + offset_turns(geometry);
 }
 
-/// The |w| whose phases are rounded by the accuracy; 0 where those of u and v are.
+/// The |w| whose phases are rounded by the accuracy; 0 where phases of u and v are.
 double last_w(double accuracy, const imager::ImageGeometry& geometry) {
   const double rounding_a_turn = imager::phase_rounding(1) - imager::phase_rounding(0);
   return std::max(0.0, accuracy / rounding_a_turn - offset_turns(geometry)) / imager::largest_drop(geometry);

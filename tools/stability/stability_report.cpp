@@ -11,7 +11,7 @@ struct Part {
   std::function<ReportSection()> make;
 };
 
-/// So many that sums in extended precision take a minute or so.
+/// The most samples: sums in extended precision then take about a minute.
 constexpr std::size_t most_samples = 30000;
 
 std::vector<Part> parts_of(const StabilityData& data, const StabilityOptions& options) {

@@ -33,7 +33,7 @@ imager::UvwReach reach_of(const imager::VisibilityBlock& block) {
   return reach;
 }
 
-/// By gridding, however few the samples: direct sums have no kernel to put to the test.
+/// The request for a case, by gridding however few the samples: direct sums have no kernel to test.
 imager::GriddingRequest request_of(const StabilityCase& asked, double accuracy) {
   imager::GriddingRequest request;
   request.geometry = asked.geometry;
@@ -61,7 +61,7 @@ PlanOrRefusal plan_or_refusal(imager::GriddingRequest request) {
   }
 }
 
-/// Whether one plan serves both: all else that a case may ask is equal.
+/// Whether one plan serves both requests: all other parts of cases' requests are equal.
 bool alike(const imager::GriddingRequest& a, const imager::GriddingRequest& b) {
   const imager::ImageGeometry &g = a.geometry, &h = b.geometry;
   return a.accuracy == b.accuracy && a.samples == b.samples && a.max_abs_w == b.max_abs_w && a.gridder == b.gridder &&

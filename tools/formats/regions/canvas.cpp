@@ -11,7 +11,7 @@
 namespace misfit::tools::regions {
 namespace {
 
-constexpr double farthest_pixels = 1e9;  // where a double still tells millionths of a pixel apart
+constexpr double farthest_pixels = 1e9;  // up to which a double tells millionths of a pixel apart
 
 }  // namespace
 

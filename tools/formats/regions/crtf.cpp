@@ -67,7 +67,7 @@ std::vector<std::vector<std::string_view>> arguments_of(std::string_view text, c
   return arguments;
 }
 
-/// The text up to the bracket that closes its first, and what is behind.
+/// The text up to the bracket that closes its first one, and the text behind it.
 std::pair<std::string_view, std::string_view> split_at_closing(std::string_view text, const std::string& expected) {
   int depth = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -77,7 +77,7 @@ std::pair<std::string_view, std::string_view> split_at_closing(std::string_view 
   refuse(text, expected);
 }
 
-/// How shapes are written; what takes pairs and single arguments, in this order.
+/// The form of shapes: pairs come before single arguments.
 struct Form {
   std::string_view name;
   std::string_view other_name;
@@ -186,7 +186,7 @@ bool fits(const Form& form, const std::vector<std::vector<std::string_view>>& ar
   return form.singles == 0 || arguments.back().size() == 1;
 }
 
-/// Refuses keywords that mean nothing, whatever the image.
+/// Refuses keywords that mean nothing for any image.
 void check_meaning(const RegionKeywords& keywords) {
   spectral_range(keywords);
   stokes_of_corr(keywords, {});
@@ -210,7 +210,7 @@ RegionLine CrtfReader::read(std::string_view line) {
   if (line.empty() || line.starts_with('#')) return {};
   std::string_view rest = line;
   const std::string word = small_letters(take_word(rest));
-  if (word == "ann") return {};  // which is by its own words for the eye
+  if (word == "ann") return {};  // annotations are for the eye
   for (const char* shape : {"symbol", "line", "polyline", "vector", "text"})
     if (word == shape) return {{}, {word}};
   if (word != "global") return read_shape(line);

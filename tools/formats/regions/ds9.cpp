@@ -36,8 +36,8 @@ std::optional<std::string> frame_of(const std::string& word, const std::string& 
   return std::nullopt;
 }
 
-/// The name of a shape that has no area, which DS9 leaves out of analyses; else empty. A point may have another shape's name
-/// before it, which is how it is drawn.
+/// The name of a shape that has no area, which DS9 leaves out of analyses; else empty. A point may have the name of another
+/// shape before it, as which it is drawn.
 std::string shape_without_area(std::string_view statement) {
   constexpr std::array<std::string_view, 9> drawn{"point", "line",    "vector", "segment", "projection",
                                                   "ruler", "compass", "text",   "textbox"};
@@ -47,7 +47,7 @@ std::string shape_without_area(std::string_view statement) {
   return std::find(drawn.begin(), drawn.end(), first) != drawn.end() ? first : "";
 }
 
-/// The arguments of a description, "(1, 2 3)" or "1 2 3"; n=4, which parts an annulus only, is left out.
+/// The arguments of a description, "(1, 2 3)" or "1 2 3"; n=4, which only divides an annulus, is left out.
 std::vector<std::string_view> arguments_of_ds9(std::string_view text, std::string_view whole) {
   if (text.starts_with('(')) {
     const std::size_t end = text.find(')');
@@ -71,7 +71,7 @@ std::vector<std::string_view> arguments_of_ds9(std::string_view text, std::strin
 /// A shape's arguments in a frame.
 class Ds9Shape {
  public:
-  /// `frame`: empty for pixels. `description`: of which `arguments` are parts.
+  /// `frame`: empty for pixels. `arguments` are parts of `description`.
   Ds9Shape(const Canvas& canvas, std::string frame, std::string_view description, std::vector<std::string_view> arguments)
       : canvas_(canvas), frame_(std::move(frame)), whole_(description), arguments_(std::move(arguments)) {}
 
@@ -92,13 +92,13 @@ class Ds9Shape {
   }
 
  private:
-  /// Which arguments are lengths along x and y.
+  /// The arguments that are lengths along x and y.
   struct Radii {
     std::size_t x;
     std::size_t y;
   };
 
-  /// Which arguments are the lengths of outlines from the inner to the outer: so many, of one or two lengths each.
+  /// The arguments that are lengths of outlines, from the inner to the outer: so many, of one or two lengths each.
   struct Rings {
     std::size_t first;
     std::size_t count;
@@ -107,7 +107,7 @@ class Ds9Shape {
     Radii radii(std::size_t i) const { return {first + i * each, first + i * each + each - 1}; }
   };
 
-  /// The outline of the last lengths without that of the first, if there are several.
+  /// The outline of the last lengths without the outline of the first, if there are several.
   Shape rings(const Rings& of, bool boxes, double turn_rad) const {
     const auto draw = [&](Radii r) { return boxes ? Outline(box(r, turn_rad)) : Outline(ellipse(r, turn_rad)); };
     for (std::size_t i = of.first + of.each; i < of.first + of.count * of.each; ++i)
@@ -117,8 +117,8 @@ class Ds9Shape {
     return shape;
   }
 
-  /// Rings within a sector; in how many parts of both the viewer shows it does not matter. Where north is turned, DS9 turns the
-  /// sector of ellipses and boxes both with them and by itself.
+  /// Rings within a sector; the numbers of parts in which the viewer shows both do not matter. Where north is turned, DS9 turns
+  /// the sector of ellipses and boxes both with them and by itself.
   Shape panda(const std::string& name) const {
     const bool circles = name != "epanda" && name != "bpanda";
     const std::size_t each = circles ? 1 : 2, parts = 5 + 2 * each, count = arguments_.size();
@@ -174,7 +174,7 @@ class Ds9Shape {
   }
   double pixels(std::size_t i) const { return canvas_.pixels(length(i), arguments_[i]); }
 
-  /// The same, or 0, as an inner radius may be.
+  /// A length in pixels, or 0, as an inner radius may be.
   double size(std::size_t i) const { return length(i).value == 0 ? 0 : pixels(i); }
 
   /// A number alone, in pixels (i, p), or with one of these units of angles.

@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<std::string_view, 18> viewed{"text",     "color", "dash",   "width",     "font",       "select",
                                                   "highlite", "fixed", "edit",   "move",      "rotate",     "delete",
                                                   "tag",      "fill",  "format", "textangle", "textrotate", "composite"};
-/// Those of several values.
+/// Properties of several values.
 constexpr std::array<std::string_view, 11> viewed_lists{"dashlist", "callback", "line",   "vector", "ruler", "point",
                                                         "compass",  "panda",    "cpanda", "epanda", "bpanda"};
 
@@ -23,13 +23,13 @@ bool is_one_of(const std::array<std::string_view, count>& names, std::string_vie
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Where what begins at `begin` with a brace or a quote ends: behind its counterpart, or at the end of the text.
+/// The end of a text that begins at `begin` with a brace or a quote: behind its counterpart, or at the end of the text.
 std::size_t end_of_quoted(std::string_view text, std::size_t begin) {
   const std::size_t end = text.find(text[begin] == '{' ? '}' : text[begin], begin + 1);
   return end == std::string_view::npos ? text.size() : end + 1;
 }
 
-/// Where `mark` first stands outside of braces, and outside of quotes behind a #, or the end.
+/// The first place of `mark` outside of braces, and outside of quotes behind a #; or the end.
 std::size_t find_mark(std::string_view text, char mark) {
   bool in_properties = false;
   for (std::size_t i = 0; i < text.size();) {
@@ -58,7 +58,7 @@ bool yes_or_no(std::string_view name, std::string_view value) {
   return value == "1";
 }
 
-/// Whether `text` goes on with something other than a property: a name and an equals sign, or one of the two words.
+/// Whether `text` does not go on with a property: a name and an equals sign, or one of the two words.
 bool goes_on(std::string_view text) {
   const std::string word = small_letters(take_word(text));
   return !text.starts_with('=') && word != "source" && word != "background";

@@ -40,7 +40,8 @@ std::vector<Interval> columns_of(const Ellipse& e, double row) {
   return {{e.centre.column + (-b - root) / a, e.centre.column + (-b + root) / a}};
 }
 
-/// Where the winding number of a polygon is not 0 along a line of constant row, and the sides that lie along it.
+/// The columns along a line of constant row where the winding number of a polygon is not 0, and the sides that lie along the
+/// line.
 std::vector<Interval> crossed_columns(const Polygon& p, double row) {
   std::vector<Interval> found;
   std::vector<std::pair<double, int>> crossings;  // columns, and whether the side goes up or down
@@ -64,7 +65,7 @@ std::vector<Interval> crossed_columns(const Polygon& p, double row) {
   return found;
 }
 
-/// The columns of a row within a polygon: those of lines a millionth of a pixel below and above it belong to it too.
+/// The columns of a row within a polygon; columns on lines a millionth of a pixel below and above the row count, too.
 std::vector<Interval> columns_of(const Polygon& p, double row) {
   std::vector<Interval> found;
   for (const double line : {row - on_border, row, row + on_border})

@@ -24,7 +24,7 @@ constexpr const char* ranges_known =
     "two channels, two frequencies or two velocities, each with its unit, such as [3chan, 7chan], [1.42GHz, 1.421GHz] or "
     "[-10km/s, 20km/s]";
 
-/// FITS SPECSYS of `frame`; empty where there is none.
+/// FITS SPECSYS of the keyword `frame`; empty where there is none.
 std::string frame_of(const RegionKeywords& keywords) {
   const std::string frame = value_of(keywords, "frame");
   return frame.empty() ? "" : ms_io::capitals(frame) == "REST" ? "SOURCE" : ms_io::parse_spectral_frame(frame);
@@ -37,7 +37,7 @@ std::string velocity_type(const RegionKeywords& keywords) {
   refuse_value(keywords, "veltype", "one of RADIO, OPTICAL, Z, BETA, GAMMA");
 }
 
-/// 0 where none is named.
+/// The frequency of `restfreq`; 0 where there is none.
 double rest_frequency_hz(const RegionKeywords& keywords) {
   const std::string rest = value_of(keywords, "restfreq"), expected = "a frequency above 0, such as 1.420405752GHz";
   if (rest.empty()) return 0;
@@ -67,7 +67,7 @@ std::pair<std::string, std::string> ends_of(const RegionKeywords& keywords) {
           std::string(trimmed(std::string_view(range).substr(comma + 1, range.size() - comma - 2)))};
 }
 
-/// Nothing where `text` is none.
+/// One end of a range; nothing where `text` is none.
 std::optional<std::pair<Kind, double>> end_of(std::string_view text) {
   for (const std::string_view unit : {"channel", "chan"})
     if (text.ends_with(unit)) {
@@ -107,7 +107,7 @@ void check_frame(const RegionKeywords& keywords, const imager::SpectralAxis& axi
                    (frame == "SOURCE" ? ": that at rest in the source takes the source's velocity, which nothing names" : ""));
 }
 
-/// What the planes are, for errors.
+/// The planes in words, for errors.
 std::string planes_text(const imager::SpectralAxis& axis) {
   const imager::FrequencyBand band = axis.band();
   return frequency_text(band.low_hz, 8) + " to " + frequency_text(band.high_hz, 8);
