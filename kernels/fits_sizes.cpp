@@ -100,7 +100,7 @@ std::uint64_t hdu_size(const FitsBytes& file, std::uint64_t begin) {
   return header + blocks(static_cast<std::uint64_t>(data));
 }
 
-/// Whether a reader would take the bytes there for a header.
+/// True if a reader would take the bytes there for a header.
 bool is_header(const FitsBytes& file, std::uint64_t at) {
   const std::string key = at < file.size ? file.read(at, 8) : "";
   return key == "XTENSION" || key == "SIMPLE  ";

@@ -275,7 +275,7 @@ bool has_table(const FitsMemory& file, std::string name) {
   return found;
 }
 
-/// Whether every HDU is as it was written, and nothing behind them.
+/// True if every HDU is as it was written, and nothing behind them.
 bool is_intact(const FitsMemory& file, std::size_t size) {
   int status = 0, count = 0;
   bool intact = file.end() == size;

@@ -80,7 +80,8 @@ class Half {
     Real largest = 0;
     Real smallest = std::numeric_limits<Real>::max();
   };
-  /// Of the design matrix in orthonormal sums (C_r ± C_{W−1−r})/√2, by iteration with its triangular factor.
+  /// The singular values of the design matrix in orthonormal sums (C_r ± C_{W−1−r})/√2, by iteration with its triangular
+  /// factor.
   SingularValues singular_values() const {
     SingularValues found;
     const Eigen::Index n = orthonormal_.cols();

@@ -62,7 +62,7 @@ PiecewisePolynomial fit_polynomial(const TapFunction& taps, int degree) {
 
 PiecewisePolynomial fit_polynomial_within(const TapFunction& taps, double mean_square) {
   const Eigen::MatrixXd series = legendre_series(taps, highest_degree);
-  // Of taps that were rounded to doubles the high terms are noise: their sum would never fall below what doubles hold.
+  // High terms of taps that were rounded to doubles are noise: their sum would never fall below what doubles hold.
   constexpr double unit = 0x1p-53;
   const double noise = unit * unit * static_cast<double>(series.cols());
   double left = 0;

@@ -17,10 +17,10 @@ struct Positions {
 Positions smooth_positions();
 
 /// For taps that are smooth only between multiples of 1/(2·steps), as are the taps of a lookup table with `steps` entries a
-/// cell: Gauss rules between these points. Of more than 256 pairs of pieces 28 are taken. That is enough, because the error of
-/// a table is a function G(t, p) of the place t of the pair in the cell and of the place p within the pair, smooth in t: the
-/// sum over all pairs is the integral over t but for G''/(24 steps²), by the midpoint rule, and the 28 pairs, those around
-/// Gauss nodes with weights made for where they really lie, integrate polynomials of degree 27 in t.
+/// cell: Gauss rules between these points. If there are more than 256 pairs of pieces, 28 are taken. That is enough, because
+/// the error of a table is a function G(t, p) of the place t of the pair in the cell and of the place p within the pair, smooth
+/// in t: the sum over all pairs is the integral over t but for G''/(24 steps²), by the midpoint rule, and the 28 pairs, those
+/// around Gauss nodes with weights made for where they really lie, integrate polynomials of degree 27 in t.
 Positions stepped_positions(int steps);
 
 }  // namespace misfit::kernels

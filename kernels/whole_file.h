@@ -16,7 +16,7 @@ std::filesystem::path writable_target(const std::filesystem::path& path);
 /// A name beside `path` that no other process on any machine uses, for a file that is renamed to `path` when it is complete.
 std::filesystem::path temporary_beside(const std::filesystem::path& path);
 
-/// Whether a name is one that temporary_beside() gives.
+/// True if a name is one that temporary_beside() gives.
 bool is_temporary(const std::filesystem::path& path);
 
 /// Writes `size` bytes; the file appears under its name only when complete, and whoever writes the same name at the same time

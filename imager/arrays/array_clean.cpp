@@ -71,7 +71,7 @@ StoredVisibilities stored(const ArrayCoordinates& at, const ArrayValues<Real>& v
   return blocks;
 }
 
-/// The same axis, turned into (−π/2, π/2].
+/// The position angle of the same axis in (−π/2, π/2].
 double in_half_turn(double position_angle_rad) {
   return position_angle_rad <= -pi / 2 ? position_angle_rad + pi : position_angle_rad;
 }

@@ -42,7 +42,7 @@ void keep_least(std::atomic<std::size_t>& least, std::size_t row) {
   }
 }
 
-/// Whether a block can hold all weights of the rows: in single precision, and none negative.
+/// True if a block can hold all weights of the rows: in single precision, and none negative.
 bool fits_block(const Strided<const double>& weight, RowsOfArray, int) {
   return !weight;
 }

@@ -10,7 +10,7 @@
 namespace misfit::imager {
 namespace {
 
-/// Whether single precision holds a value.
+/// True if single precision holds a value.
 bool is_single(double value) {
   return std::abs(value) <= std::numeric_limits<float>::max();
 }

@@ -60,7 +60,7 @@ void check_phases(const ImageGeometry& geometry, const UvwReach& reach, const Ar
                                 " turns; expected " + text("%.2g", phase_rounding(turns)) + " or more");
 }
 
-/// Whether every pixel lies beyond the horizon: if so, the nearest point of the image's rectangle does.
+/// True if every pixel lies beyond the horizon: then the nearest point of the image's rectangle does.
 bool wholly_beyond_horizon(const ImageGeometry& geometry) {
   const auto nearest = [](double a, double b) { return a * b <= 0 ? 0 : std::min(std::abs(a), std::abs(b)); };
   const double l = nearest(geometry.l(0), geometry.l(geometry.width - 1));

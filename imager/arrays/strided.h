@@ -17,7 +17,7 @@ struct Strided {
   T& at(std::size_t row, std::size_t column) const {
     return data[static_cast<std::ptrdiff_t>(row) * row_step + static_cast<std::ptrdiff_t>(column) * column_step];
   }
-  /// Whether values follow upon another, row after row.
+  /// True if values follow upon another, row after row.
   bool dense() const {
     const bool rows_follow = rows <= 1 || row_step == static_cast<std::ptrdiff_t>(columns);
     return rows_follow && (columns <= 1 || column_step == 1);

@@ -14,7 +14,7 @@ class VoltagePattern {
   /// The voltage at an angle θ ≤ 90° from the axis, of which `sine` is sin θ; for a pattern that is not round, the root of its
   /// mean power at this θ.
   virtual double voltage(double sine, double frequency_hz) const = 0;
-  /// Whether it is the same at all position angles.
+  /// True if it is the same at all position angles.
   virtual bool is_round() const { return true; }
   /// The voltage at a position angle in the dish's own frame, counted from the zenith towards where east is when the zenith is
   /// north.

@@ -30,7 +30,7 @@ class LineBlur {
     for (int k = 0; k <= length_ / 2; ++k) transfer_.push_back(spectrum[static_cast<std::size_t>(k)].real() / length_);
   }
 
-  /// What one thread needs.
+  /// The buffers of one thread.
   struct Line {
     Fft<double>::RealBuffer pixel;
     Fft<double>::ComplexBuffer spectrum;

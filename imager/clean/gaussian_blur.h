@@ -10,8 +10,8 @@ namespace misfit::imager {
 /// Throws std::invalid_argument unless fwhm_pixels > 0.
 std::vector<double> gaussian_taps(double fwhm_pixels);
 
-/// image ⊗ taps along rows ⊗ taps along columns: a unit of flux stays one, but for what leaves the image. What lies beyond the
-/// image, or is NaN, counts as 0. By FFTs in double precision; the same bits for any number of threads. Throws
+/// image ⊗ taps along rows ⊗ taps along columns: a unit of flux stays one, but for what leaves the image. Places beyond the
+/// image, and NaN, count as 0. FFTs in double precision; the number of threads does not change a bit. Throws
 /// std::invalid_argument unless fwhm_pixels > 0.
 Image gaussian_blur(const Image& image, double fwhm_pixels, int threads);
 

@@ -4,13 +4,13 @@
 
 namespace misfit::imager {
 
-/// Whether a mask lets CLEAN take components from a pixel of this value: neither 0 nor NaN.
+/// True if a mask lets CLEAN take components from a pixel of this value: neither 0 nor NaN.
 bool mask_allows(double value);
 
 /// How many pixels a mask allows.
 std::size_t allowed_pixels(const Image& mask);
 
-/// Whether a mask allows no pixel at all.
+/// True if a mask allows no pixel at all.
 bool mask_is_empty(const Image& mask);
 
 /// The largest magnitude of a pixel that a mask of the same size allows; 0 where none is allowed, or all are NaN.

@@ -30,7 +30,7 @@ struct MinorCycleOptions {
   DoubtfulSidelobes doubtful{};
   double sure_jy = 0;           ///< in Jy/beam; 0 = down to the threshold, whatever the doubt
   const Image* mask = nullptr;  ///< where components may lie, see mask.h; null = everywhere
-  /// Whether it looks in the end at pixels that were faint, if sidelobes of all components, by nine standard deviations, may
+  /// True if it looks in the end at pixels that were faint, if sidelobes of all components, by nine standard deviations, may
   /// have raised them above the threshold; no pixel then exceeds it by more than half a percent. Where the noise sets the depth
   /// it looks in any case. Otherwise pixels that were faint until sidelobes were removed may exceed the threshold; a residual
   /// made anew shows them, too.
@@ -61,8 +61,8 @@ struct MinorCycleReport {
 };
 
 /// A way to find components in an image whose PSF is known: CLEAN without visibilities. Made once for a PSF, whose size is that
-/// of the images, and whose peak, 1, is the middle pixel (row height/2, column width/2). What lies beyond the PSF, or is NaN,
-/// counts as 0. Pixels of a residual that are NaN are never cleaned. The same components for any number of threads.
+/// of the images, and whose peak, 1, is the middle pixel (row height/2, column width/2). Places beyond the PSF, and NaN, count
+/// as 0. Pixels of a residual that are NaN are never cleaned. The number of threads does not change components.
 class MinorCycle {
  public:
   MinorCycle(const MinorCycle&) = delete;
@@ -125,9 +125,9 @@ class MinorCycleWatch {
     const double depth = depth_jy();
     return depth == options_.threshold_jy ? options_.to_the_last : depth == noise_depth_jy();
   }
-  /// Whether no further component is to be taken now that the brightest pixel has this magnitude; if so, `report` says why.
+  /// True if no further component is to be taken now that the brightest pixel has this magnitude; `report` then says why.
   bool ends(double peak_jy, MinorCycleReport& report) const;
-  /// Whether there are as many components as allowed, or the user wishes to end; if so, `report` says which of the two.
+  /// True if there are as many components as allowed, or the user wishes to end; `report` then says which of the two.
   bool is_at_limit(MinorCycleReport& report) const;
 
  private:

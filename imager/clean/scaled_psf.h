@@ -40,7 +40,7 @@ class ScaledPsf {
     return core_[(from * scale_.size() + to) * psfs() + static_cast<std::size_t>(k)] + row * stride_ + column;
   }
   int stride() const { return static_cast<int>(stride_); }  ///< from a row of at() to the next
-  /// Whether the PSF reaches any pixel of a tile whose first pixel lies so far from a component.
+  /// True if the PSF reaches any pixel of a tile whose first pixel lies so far from a component.
   bool reaches(int row, int column) const;
 
   /// The strength of the PSF between two scales, in √merit of the other scale, for 1 Jy.

@@ -35,7 +35,7 @@ struct FoldedRow {
       v_per_hz = -v_per_hz;
     }
   }
-  /// Whether |u| and |v| reach no further than the grid at this frequency and below.
+  /// True if |u| and |v| reach no further than the grid at this frequency and below.
   bool within(const GridShape& shape, double frequency_hz) const {
     return std::abs(u_per_hz) * frequency_hz <= 0.5 * shape.nu && v_per_hz * frequency_hz <= 0.5 * shape.nv;
   }

@@ -78,7 +78,7 @@ class Ladder {
   static constexpr double rounding = 1e-6;  // of a channel: planes that lie on channels take these alone
 
   ChannelTap alone(std::size_t step) const { return {index_[step], index_[step], 0}; }
-  /// Whether no channel is missing between a step and the next.
+  /// True if no channel is missing between a step and the next.
   bool adjacent(std::size_t step) const {
     return frequency_hz_[step + 1] - frequency_hz_[step] <= 0.75 * (width_hz_[step] + width_hz_[step + 1]);
   }

@@ -34,7 +34,7 @@ inline double n_minus_1(DirectionCosines at) {
   return -r2 / (1 + std::sqrt(1 - r2));
 }
 
-/// Whether a direction lies beyond the horizon, l² + m² > 1.
+/// True if a direction lies beyond the horizon, l² + m² > 1.
 inline bool beyond_horizon(DirectionCosines at) {
   return std::isnan(n_minus_1(at));
 }
@@ -70,7 +70,7 @@ inline double drop(DirectionCosines at) {
 /// The largest drop of any pixel. Over a rectangle it is in a corner.
 double largest_drop(const ImageGeometry& geometry);
 
-/// Whether any pixel lies beyond the horizon: if one does, a corner does.
+/// True if any pixel lies beyond the horizon: if one does, a corner does.
 bool crosses_horizon(const ImageGeometry& geometry);
 
 }  // namespace misfit::imager

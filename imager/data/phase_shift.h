@@ -35,7 +35,7 @@ class PhaseShift {
   PhaseShift() = default;
   PhaseShift(const UvwAxes& from, const UvwAxes& to);
 
-  /// Whether it changes nothing.
+  /// True if it changes nothing.
   bool none() const { return none_; }
   /// Turns UVW [row][3], metres, to the new axes.
   void rotate(std::vector<double>& uvw_m) const { rotate(uvw_m, {0, uvw_m.size() / 3}); }

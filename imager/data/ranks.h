@@ -19,7 +19,7 @@ struct Traffic {
 /// The numbers of an image that pass from rank to rank in one piece, where images are added up on their way to rank 0.
 inline constexpr std::size_t chain_piece = std::size_t{1} << 18;
 
-/// Whether the sum of `count` numbers reaches rank 0 sooner along a chain of all ranks, in pieces that follow each other, than
+/// True if the sum of `count` numbers reaches rank 0 sooner along a chain of all ranks, in pieces that follow each other, than
 /// in a binomial tree, where rank 0 takes numbers in from each of its branches.
 bool pass_along_ranks(int ranks, std::size_t count);
 
@@ -36,7 +36,7 @@ class Ranks {
   virtual int on_this_machine() const = 0;
   virtual int on_these_cores() const = 0;
   bool alone() const { return size() == 1; }
-  /// Whether this is rank 0, which alone prints and writes.
+  /// True if this is rank 0, which alone prints and writes.
   bool first() const { return rank() == 0; }
 
   /// Waits until all are here.
@@ -80,7 +80,7 @@ inline double largest_of(const Ranks& ranks, double value) {
   return value;
 }
 
-/// Whether `here` is true on any rank.
+/// True if `here` is true on any rank.
 inline bool any_of(const Ranks& ranks, bool here) {
   return largest_of(ranks, here ? 1 : 0) > 0;
 }

@@ -17,7 +17,7 @@ std::string stokes_name(Stokes stokes);
 /// 29).
 int fits_stokes_code(Stokes stokes);
 
-/// Whether a code stands for a Stokes parameter or correlation here, as in CORR_TYPE of a MeasurementSet and on a FITS STOKES
+/// True if a code stands for a Stokes parameter or correlation here, as in CORR_TYPE of a MeasurementSet and on a FITS STOKES
 /// axis.
 bool is_stokes_code(int casacore_code);
 bool is_fits_stokes_code(int fits_code);
@@ -34,7 +34,7 @@ std::string stokes_names(const std::vector<Stokes>& list);
 /// than the text's, the list has that order. "pseudoI" is I, see is_pseudo_i().
 std::vector<Stokes> parse_stokes(const std::string& text);
 
-/// Whether a text, in capitals or not, asks for CASA's pseudoI: Stokes I also of samples that have one parallel hand alone.
+/// True if a text, in capitals or not, asks for CASA's pseudoI: Stokes I also of samples that have one parallel hand alone.
 bool is_pseudo_i(const std::string& text);
 
 }  // namespace misfit::imager

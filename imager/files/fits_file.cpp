@@ -37,14 +37,14 @@ class CallOfCfitsio : kernels::CfitsioCall {
   CallOfCfitsio() { errno = 0; }
 };
 
-/// Whether a disk failed. CFITSIO 4.2 does not check that its buffers could be written before it moves to another place of the
+/// True if a disk failed. CFITSIO 4.2 does not check that its buffers could be written before it moves to another place of the
 /// file, and goes on without them.
 bool is_lost_write(int error) {
   constexpr std::array errors{ENOSPC, EDQUOT, EIO, EFBIG};
   return std::find(errors.begin(), errors.end(), error) != errors.end();
 }
 
-/// Whether the system refused something: CFITSIO leaves other numbers in errno as well.
+/// True if the system refused something: CFITSIO leaves other numbers in errno as well.
 bool is_of_the_system(int error) {
   constexpr std::array errors{EROFS, EACCES, EPERM, ENOMEM, EMFILE, ENFILE, ENAMETOOLONG};
   return is_lost_write(error) || std::find(errors.begin(), errors.end(), error) != errors.end();

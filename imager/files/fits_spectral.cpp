@@ -52,7 +52,7 @@ const Frame* frame_named(std::string_view aips) {
   return nullptr;
 }
 
-/// What one axis states.
+/// The frequencies that one axis states.
 class Spectral {
  public:
   Spectral(const FitsFile& file, FitsAxis axis, double rest_hz) : file_(file), axis_(std::move(axis)), rest_hz_(rest_hz) {

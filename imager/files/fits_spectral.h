@@ -11,7 +11,7 @@ namespace misfit::imager {
 /// The types of axes that read_spectral_axis() reads, for messages.
 constexpr const char* spectral_types = "FREQ, VRAD, VELO, VOPT, FELO, ZOPT or WAVE";
 
-/// Whether a CTYPE is one of these, in form: with AIPS's name of a frame behind it (FREQ-LSR, VELO-HEL), or FITS's name of its
+/// True if a CTYPE is one of these, in form: with AIPS's name of a frame behind it (FREQ-LSR, VELO-HEL), or FITS's name of its
 /// sampling (VOPT-F2W).
 bool is_spectral(const std::string& type);
 

@@ -15,7 +15,7 @@ std::optional<double> header_number(std::string text);
 /// A value as it stands on a card without the quotes of a text, two of which are one within it, and blanks at its end.
 std::string bare_header_value(std::string value);
 
-/// Whether two such values say the same: "33" and "33.0".
+/// True if two such values say the same: "33" and "33.0".
 bool same_header_value(const std::string& one, const std::string& other);
 
 /// The compression of a file that begins like this, and the program that uncompresses it, in words; empty where it is not

@@ -16,7 +16,7 @@ inline bool stands_for_no_beam(double major_arcsec) {
   return !(major_arcsec > 1.001 * no_beam_arcsec);
 }
 
-/// Whether two beams are the same to the last bit.
+/// True if two beams are the same to the last bit.
 inline bool same_beam(const Beam& a, const Beam& b) {
   return a.major_rad == b.major_rad && a.minor_rad == b.minor_rad && a.position_angle_rad == b.position_angle_rad;
 }

@@ -60,7 +60,7 @@ Plane projected(const SkyGrid& grid, double l, double m, double n) {
   return {stretch * l, stretch * m};
 }
 
-/// Whether a direction with the cosine n from the reference has a point of its own in the plane. In projections that reach
+/// True if a direction with the cosine n from the reference has a point of its own in the plane. In projections that reach
 /// around the sphere the farthest direction lies at infinity, or is a circle instead of a point.
 bool reaches(Projection projection, double n) {
   return n > (projection == Projection::sin || projection == Projection::tan ? 0 : -1 + 1e-12);

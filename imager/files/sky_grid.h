@@ -43,9 +43,9 @@ struct SkyGrid {
   double row_step_rad() const { return std::hypot(step[0][1], step[1][1]); }
   /// The position angle of the direction in which rows count up, from north through east.
   double position_angle_rad() const { return std::atan2(step[0][1], step[1][1]); }
-  /// Whether the sky is seen as from outside, with east on the right where north is up.
+  /// True if the sky is seen as from outside, with east on the right where north is up.
   bool is_mirrored() const { return step[0][0] * step[1][1] - step[0][1] * step[1][0] > 0; }
-  /// Whether pixels have an area, and the farthest of them a finite place.
+  /// True if pixels have an area, and the farthest of them a finite place.
   bool is_regular() const;
 };
 

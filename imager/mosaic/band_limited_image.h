@@ -22,7 +22,7 @@ class BandLimitedImage {
   static constexpr int margin = 8;
 
   /// `pixels` are all that are known, NaN elsewhere. `shown`, of the same size, is NaN where a known pixel only serves its
-  /// neighbours, as one under a mask: nearest to it, values are undefined. The same bits for any number of threads. Throws
+  /// neighbours, as one under a mask: nearest to it, values are undefined. The number of threads does not change a bit. Throws
   /// std::invalid_argument where the sizes differ.
   BandLimitedImage(const Image& pixels, const Image& shown, int threads);
 

@@ -32,8 +32,8 @@ class LinearMosaic {
 
   LinearMosaic(int width, int height) : sum_(width, height), weight_(width, height) {}
 
-  /// Adds a pointing. The same bits for any number of threads. Throws std::invalid_argument where the noise is not above 0, or
-  /// sizes differ.
+  /// Adds a pointing. The number of threads does not change a bit. Throws std::invalid_argument where the noise is not above 0,
+  /// or sizes differ.
   void add(const MosaicPart& part, int threads);
   /// All that was added; NaN where the joint beam is below `limit`, and where no pointing takes part.
   MosaicPlane finished(double limit) const;

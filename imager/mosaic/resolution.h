@@ -23,7 +23,7 @@ struct BeamChange {
 ///     F → F · exp(−2π² fᵀ (Σ_to − Σ_from) f) · area_to / area_from
 /// at the frequency f. A point source keeps its peak. Directions in which `to` is shorter, as rounding may leave it, stay as
 /// they are. NaN counts as 0, and so do places beyond the border; pixels are NaN where more than 1 % of their Gaussian lies on
-/// these. The same bits for any number of threads.
+/// these. The number of threads does not change a bit.
 Image with_beam(const Image& image, const BeamChange& change, const SkyGrid& grid, int threads);
 
 }  // namespace misfit::imager

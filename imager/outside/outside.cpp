@@ -17,7 +17,7 @@ struct Group {
   double rows_jy = 0;
   double columns_jy = 0;
 
-  /// Whether a fainter component is part of it: a neighbour, or one of the components of a source between pixels, which are the
+  /// True if a fainter component is part of it: a neighbour, or one of the components of a source between pixels, which are the
   /// fainter the farther off they are.
   bool has(const Component& c) const {
     const int apart = std::max(std::abs(brightest.row - c.row), std::abs(brightest.column - c.column));

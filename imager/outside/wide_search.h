@@ -42,7 +42,7 @@ class WideFieldFinder {
 /// How the wider field is imaged: to 1e-4, within the memory that `image` allows.
 GriddingPlan plan_wide_field(const WideField& field, const GriddingRequest& image);
 
-/// Whether any rank has a usable sample for the wider field: all its samples may be flagged.
+/// True if any rank has a usable sample for the wider field: all its samples may be flagged.
 bool can_be_imaged(const ImageGeometry& field, const VisibilitySource& source);
 
 /// The result of the search in a wider field.

@@ -144,7 +144,7 @@ TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& s
       plan.leaves_w_out() ? std::min(w.rms_rad, std::sqrt(2.0)) : 0;  // unit phasors at random are √2 apart
   const double phase_max = plan.leaves_w_out() ? std::min(w.max_rad, 2.0) : 0;
   const auto over_image = [image_rms](double x) { return x == 0 ? 0 : x / image_rms; };
-  // Of a mosaic, what the pointings p add to a pixel is Σ B_p Σ w|V| at most, and that over √W no more than √(Σ w|V|²).
+  // The pointings p of a mosaic add Σ B_p Σ w|V| to a pixel at most, which over √W is no more than √(Σ w|V|²).
   const bool mosaic = by != nullptr && by->mosaic() != nullptr;
   const double flux = over_image(mosaic ? std::sqrt(sums.weight_square / by->weight()) : sums.weight_abs / sums.weight);
   TheoreticalError error;

@@ -149,10 +149,10 @@ class Search {
     return c.worst_error <= std::max(target_, nominal.worst_error) ? c : nominal;
   }
 
-  /// Whether a wider kernel would only gather rounding.
+  /// True if a wider kernel would only gather rounding.
   static bool exhausted(const GriddingCandidate& c) { return c.worst_error < 2 * c.rounding; }
   bool costs_less(const GriddingCandidate& c) const { return !best_ || c.cost_s < best_->cost_s; }
-  /// Whether a candidate may be taken: where no accuracy is asked, single precision must not limit it.
+  /// True if a candidate may be taken: where no accuracy is asked, single precision must not limit it.
   bool trusted(const GriddingCandidate& c) const {
     if (c.work.precision == Precision::double_precision || request_.accuracy != 0 || request_.precision) return true;
     return c.worst_error >= request_.single_from && c.rounding < 0.1 * c.worst_error;

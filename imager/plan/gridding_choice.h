@@ -12,7 +12,7 @@
 
 namespace misfit::imager {
 
-/// Whether a transform has a w axis: where its phase matters, never, or always.
+/// Transforms have a w axis where its phase matters, never, or always.
 enum class Gridder { automatic, standard, wide };
 
 /// The request for a mosaic's transform, of the same image as the beams.

@@ -195,7 +195,7 @@ GriddingPlan plan_together(const GriddingRequest& request, const std::string& wh
   return plan;
 }
 
-/// Whether neither a kernel nor a way of gridding was asked for.
+/// True if neither a kernel nor a way of gridding was asked for.
 bool free_to_choose(const GriddingRequest& r) {
   return r.kernel.name == GriddingRequest().kernel.name && r.accuracy != 0 && r.kernel_width == 0 && r.padding == 0 &&
          r.gridder == Gridder::automatic && r.precision != Precision::single_precision && !r.lookup && r.shortest_polynomials &&

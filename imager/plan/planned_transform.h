@@ -10,7 +10,7 @@
 
 namespace misfit::imager {
 
-/// Whether residuals of a plan take so long that coarser ones are worth it, and its kernel and padding were not given.
+/// True if residuals of a plan take so long that coarser ones are worth it, and its kernel and padding were not given.
 bool may_be_coarser(const GriddingPlan& plan);
 
 /// The transform of a plan: gridding and FFTs, or direct sums where the plan found them cheaper.

@@ -10,7 +10,7 @@
 
 namespace misfit::imager {
 
-/// Whether an image with this cell can represent a sample: |u| and |v| up to 1/(2 cell), in turns per cell up to ½.
+/// True if an image with this cell can represent a sample: |u| and |v| up to 1/(2 cell), in turns per cell up to ½.
 inline bool inside_grid(double u_turns, double v_turns) {
   return std::abs(u_turns) <= 0.5 && std::abs(v_turns) <= 0.5;
 }

@@ -34,10 +34,10 @@ struct SampleSums {
 struct AdjointOptions {
   int images = 1;  ///< of a block's own Stokes parameter, or of all that it carries, up to most_stokes; 0: the PSF alone
   bool with_psf = false;
-  /// Whether samples beyond 1/(2 cell) count too, as they do in the definition: pixels are points, whose values are periodic in
-  /// u and v but for the phase of the middle one. What they add is no picture of the sky.
+  /// True if samples beyond 1/(2 cell) count too, as they do in the definition: pixels are points, whose values are periodic in
+  /// u and v but for the phase of the middle one. Their sum is no picture of the sky.
   bool beyond_grid = false;
-  /// Whether a transform that does not see all pixels alike gives its sensitivity in each, see AdjointResult.
+  /// True if a transform that does not see all pixels alike gives its sensitivity in each, see AdjointResult.
   bool with_sensitivity = false;
   /// The highest power k for which it also gives the sensitivity with w x^k, with x = ν/ν_0 − 1.
   int sensitivity_powers = 0;

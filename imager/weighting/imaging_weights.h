@@ -42,9 +42,9 @@ struct WeightingOptions {
   std::size_t pointings = 1;
 
   bool needs_density() const { return weighting != Weighting::natural; }
-  /// Whether the data's weights stay as they are.
+  /// True if the data's weights stay as they are.
   bool none() const { return !needs_density() && !tapers(); }
-  /// Whether weights depend on where in the uv plane a sample lies, besides its cell.
+  /// True if weights depend on where in the uv plane a sample lies, besides its cell.
   bool tapers() const { return taper || !window.is_whole_plane(); }
 };
 
@@ -58,7 +58,7 @@ struct WeightSums {
   static WeightSums of_natural(double weight) { return {weight, weight, weight}; }
   WeightSums& operator+=(const WeightSums& other);
 
-  /// Whether the least weights that `samples` have, see ImagingWeights::of(), add up to a millionth of the image at most.
+  /// True if the least weights that `samples` have, see ImagingWeights::of(), add up to a millionth of the image at most.
   bool outweigh_least(std::uint64_t samples) const;
   /// The standard deviation of an image's noise in Jy/beam, where w is 1/(4 σ²) of the data's noise in Jy (see
   /// VisibilityBlock::weight): √(Σ w'²/(4w)) / Σ w'. It is as right as the data's weights.

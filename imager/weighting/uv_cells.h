@@ -39,7 +39,7 @@ class UvCells {
   /// The cell, row-major [v][u], of a row's samples at each channel.
   void of_row(const double* uvw_m, const std::vector<double>& turns_per_m, std::uint32_t* cell) const;
 
-  /// Tiles are squares of cells: near cells have places that lie together. Those at the end of a row or column of tiles may
+  /// Tiles are squares of cells: near cells have places that lie together. Tiles at the end of a row or column of tiles may
   /// reach beyond the cells.
   static constexpr std::uint32_t tile_side = 8;
   static constexpr std::uint32_t tile_cells = tile_side * tile_side;

@@ -17,7 +17,7 @@ struct UvWindow {
   double inner_edge_lambda = 0;  ///< width d of the edge that begins at min; 0: steep
   double outer_edge_lambda = 0;  ///< width d of the edge that ends at max
 
-  /// Whether every factor is 1.
+  /// True if every factor is 1.
   bool is_whole_plane() const {
     return min_lambda == 0 && inner_edge_lambda == 0 && max_lambda == std::numeric_limits<double>::infinity();
   }

@@ -76,9 +76,9 @@ class PlaneStack {
       if (row >= 0 && row < shape.filled_rows()) visit(row);
     }
   }
-  /// Whether row q of any grid may hold something.
+  /// True if row q of any grid may hold something.
   bool holds(int q) const;
-  /// Whether a chunk of a row of storage may hold something; the content of others is undefined.
+  /// True if a chunk of a row of storage may hold something; the content of others is undefined.
   bool uses(int row, int index) const { return chunk_used_[chunk_number(row, index)] != 0; }
 
   std::complex<Real>* chunk(int row, int index, int plane, int grid) {

@@ -67,7 +67,7 @@ void scatter_columns(const Columns<Real>& column, int group, int plane, ImagePla
   }
 }
 
-/// What a thread needs.
+/// The buffers of one thread.
 template <typename Real>
 struct ColumnWork {
   Columns<Real> column;

@@ -121,7 +121,7 @@ void for_pieces(Planes& image, int plane, int grid, int q, int length, const Vis
 
 }  // namespace
 
-/// What a thread needs.
+/// The buffers of one thread.
 template <typename Real>
 struct StackRows<Real>::Work {
   typename Fft<Real>::ComplexBuffer line[2];  ///< of a plane and the opposite one

@@ -4,8 +4,8 @@
 
 namespace misfit::imager {
 
-// Of a prediction: its visibilities, and at worst a run for each sample, twice while they are sorted. An adjoint takes less for
-// the first Stokes parameter, and w V for each of the others.
+// A prediction holds its visibilities and, at worst, a run for each sample, twice while runs are sorted. An adjoint takes less
+// for the first Stokes parameter, and w V for each of the others.
 static_assert(wide_bytes_a_sample == sizeof(std::complex<double>) + 2 * sizeof(StackRun) + 8);
 static_assert(wide_bytes_a_value == sizeof(std::complex<double>));
 

@@ -51,7 +51,7 @@ StackBuffer<Real> buffer_of(const WideSetup<Real>& setup, int grids) {
   return StackBuffer<Real>(setup.shape.tile, setup.shape.width, grids);
 }
 
-/// Whether a tile holds so few samples that it is gridded and degridded in place in the stack: a buffer costs more to bring and
+/// True if a tile holds so few samples that it is gridded and degridded in place in the stack: a buffer costs more to bring and
 /// to add.
 bool is_sparse(const StackOrder& order, const StackTask& task);
 
