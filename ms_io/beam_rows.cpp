@@ -124,7 +124,7 @@ RowsOfFields add_pairs(const OpenSet& open_set, Antennas& antennas, BeamRows& ro
   return of_fields;
 }
 
-/// Those that rows of FEED give for the windows that are selected, in the order of the table.
+/// The offsets that rows of FEED give for the windows that are selected, in the order of the table.
 std::vector<FeedOffset> offsets_in(const OpenSet& open_set) {
   const casacore::Table& feed = open_set.set.feed();
   const casacore::ScalarColumn<int> antenna(feed, "ANTENNA_ID"), id(feed, "FEED_ID"), window(feed, "SPECTRAL_WINDOW_ID");

@@ -19,13 +19,13 @@ bool scattered(const BlockRows& block) {
   return block.rows < long_run * block.runs.size();
 }
 
-/// Whether both setups have the same factor between a row's frequencies and frequencies in the frame of the selection.
+/// True if both setups have the same factor between a row's frequencies and frequencies in the frame of the selection.
 bool share_frame_ratio(const SelectedRows& selected, const Setup& a, const Setup& b) {
   if (selected.spectral_frame.empty()) return true;
   return a.spectral_frame == b.spectral_frame && (selected.spectral_frame != source_frame || a.field == b.field);
 }
 
-/// Whether the same slice of the cells is read for both, and their cells have one shape.
+/// True if the same slice of the cells is read for both, and their cells have one shape.
 bool alike(const Setup& a, const Setup& b) {
   return a.correlation_types.size() == b.correlation_types.size() && a.stored_channels == b.stored_channels &&
          a.first_channel() == b.first_channel() && a.last_channel() == b.last_channel();

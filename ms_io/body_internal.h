@@ -39,7 +39,7 @@ class Body {
   virtual Place place(const casacore::MEpoch& when) const = 0;
 };
 
-/// Whether casacore has a body of this name, such as "JUPITER", in capitals or not.
+/// True if casacore has a body of this name, such as "JUPITER", in capitals or not.
 bool is_body_name(const std::string& name);
 
 /// The body of this name or, where casacore has none, of the table of an ephemeris at that path. CASA's tables beside FIELD

@@ -98,7 +98,7 @@ imager::SkyGrid grid_of(casacore::DirectionCoordinate direction, const casacore:
   return grid;
 }
 
-/// Whether the name of an axis that is neither of directions, frequencies nor Stokes parameters means nothing.
+/// True if the name of an axis that is neither of directions, frequencies nor Stokes parameters means nothing.
 bool says_nothing(std::string name) {
   for (char& letter : name) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
   return name.empty() || name.rfind("linear", 0) == 0 || name.rfind("pixel", 0) == 0 || name.rfind("axis", 0) == 0;

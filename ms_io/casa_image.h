@@ -27,11 +27,11 @@ enum class Masks {
 std::unique_ptr<imager::ImageReader> open_casa_image(const std::string& path, imager::Grids grids = imager::Grids::upright,
                                                      Masks masks = Masks::applied);
 
-/// Whether a casacore image lies at `path`, whoever wrote it. Throws std::runtime_error where it is a table that casacore must
+/// True if a casacore image lies at `path`, whoever wrote it. Throws std::runtime_error where it is a table that casacore must
 /// not read.
 bool is_casa_image(const std::string& path);
 
-/// Whether create_casa_image() wrote it.
+/// True if create_casa_image() wrote it.
 bool is_own_casa_image(const std::string& path);
 
 }  // namespace misfit::ms_io

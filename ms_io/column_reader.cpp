@@ -174,7 +174,7 @@ void ColumnReader::read_channels(const Cells<T>& cells, const Rows& rows, const 
   }
 }
 
-/// Whether a row has WEIGHT_SPECTRUM. Tiled cells of one shape are never empty where they are defined.
+/// True if a row has WEIGHT_SPECTRUM. Tiled cells of one shape are never empty where they are defined.
 bool ColumnReader::spectrum_defined(casacore::rownr_t row) const {
   return spectrum_.column.isDefined(row) && (spectrum_.shapes.one || spectrum_.column.shape(row).product() > 0);
 }

@@ -24,7 +24,7 @@ class Ephemeris {
   /// The direction as seen from the middle of the Earth, or from where the table says. Throws casacore::AipsError outside the
   /// table's times.
   casacore::MDirection at(double utc_mjd) const;
-  /// Whether it is seen from the middle of the Earth.
+  /// True if it is seen from the middle of the Earth.
   bool geocentric() const { return geocentric_; }
   /// Rho, the distance from where it is seen. Throws what at() does, and where the table has no such column, or the place lies
   /// within the Earth.

@@ -145,7 +145,7 @@ class CentreSearch {
     return translated("cannot read TIME of " + path_, [&] { return casacore::ScalarColumn<double>(set_, "TIME")(row); });
   }
 
-  /// Whether some fields stand still, and all others hardly move.
+  /// True if some fields stand still, and all others hardly move.
   bool some_hardly_move() {
     return times_.size() < selected_.first_row_of_field.size() && selected_.moved_rad <= noticed_motion_rad(beam_rad());
   }

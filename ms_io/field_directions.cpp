@@ -123,7 +123,7 @@ bool FieldDirections::has_ephemeris(casacore::rownr_t row) const {
   return row < ephemeris_id_.size() && ephemeris_id_[row] >= 0 && columns_.numPoly()(row) <= 0;  // which goes before
 }
 
-/// Whether a field has rates, one of which is not 0.
+/// True if a field has rates, one of which is not 0.
 bool FieldDirections::has_rates(const casacore::ArrayColumn<double>& cells, casacore::rownr_t row) const {
   const int powers = std::max(columns_.numPoly()(row), 0);
   const std::vector<double> values = cells(row).tovector();

@@ -46,7 +46,7 @@ class FieldDirections {
   Motion motion(int field) const;
   /// The motion of REFERENCE_DIR.
   Motion pointing_motion(int field) const;
-  /// Whether its direction is a polynomial of time, which is meant for the time of its rows.
+  /// True if its direction is a polynomial of time, which is meant for the time of its rows.
   bool goes_by_rates(int field) const { return has_rates(columns_.phaseDir(), row_of(field)); }
   /// How far a TIME lies from the origin of the field's rates; 0 without rates.
   double since_origin_s(int field, double time_s) const;
@@ -58,7 +58,7 @@ class FieldDirections {
   /// The velocity of the body, or else of the field's ephemeris, and its frame, see Body. Both throw where there is neither.
   double recession_m_s(int field, double time_s);
   casacore::MFrequency::Types velocity_frame(int field);
-  /// Whether the field's own frame is that of a planet, so that it depends on the place of its telescope.
+  /// True if the field's own frame is that of a planet, so that it depends on the place of its telescope.
   bool is_phased_to_body(int field) const;
   /// Why the place of the field's telescope is not known, see ObservingPlace; empty where it is.
   std::string place_doubt(const Moment& when) { return place_of(when).doubt; }

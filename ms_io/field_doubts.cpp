@@ -12,7 +12,7 @@
 namespace misfit::ms_io {
 namespace {
 
-/// Whether casacore knows the Earth's rotation. Without tables of the IERS it takes UTC for UT1, which differ by up to 0.9 s:
+/// True if casacore knows the Earth's rotation. Without tables of the IERS it takes UTC for UT1, which differ by up to 0.9 s:
 /// 13.5 arcsec at the equator.
 bool rotation_is_known(const casacore::MEpoch& when) {
   return casacore::MeasTable::dUT1(casacore::MEpoch::Convert(when, casacore::MEpoch::UTC)().get("d").getValue()) != 0;

@@ -9,7 +9,7 @@
 
 namespace misfit::ms_io {
 
-/// Whether one time comes before another; a time that is no number comes last.
+/// True if one time comes before another; a time that is no number comes last.
 inline bool earlier(double one_s, double other_s) {
   return std::isnan(other_s) ? !std::isnan(one_s) : one_s < other_s;
 }
@@ -30,7 +30,7 @@ class FieldShift {
   /// Shifts at different times, of which one may be no number.
   explicit FieldShift(List list);
 
-  /// Whether it depends on time.
+  /// True if it depends on time.
   bool moves() const { return table_->moves; }
   /// Appends the shifts of `rows` rows that were observed at time_s[0], time_s[1], …; `time_s` may be null where it does not
   /// move. The shifts live as long as this. Throws std::runtime_error for a time that is not in the list, as no row had it when

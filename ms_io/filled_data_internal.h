@@ -28,7 +28,7 @@ class FilledData {
  public:
   explicit FilledData(const std::vector<Setup>& setups);
 
-  /// Whether more rows could tell more; where none could, they need not be looked at.
+  /// True if more rows could tell more; where none could, they need not be looked at.
   bool in_doubt() const { return doubts_ > 0; }
   /// Learns from a row. A row of zeros alone, all flagged, tells nothing.
   void look_at(int data_description, int field, const RowData& row);

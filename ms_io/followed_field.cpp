@@ -28,7 +28,7 @@ class FollowedField {
   casacore::MEpoch first() const { return fields_.epoch(moving_span(from_.selected).first_s); }
   casacore::MEpoch last() const { return fields_.epoch(moving_span(from_.selected).last_s); }
   std::string name() const { return fields_.name(field_); }
-  /// Whether the field's place is known at a time: by rates only while it is observed.
+  /// True if the field's place is known at a time: by rates only while it is observed.
   bool goes_on(const casacore::MEpoch& when) const {
     const TimeSpan span = moving_span(from_.selected);
     return from_.selected.body || !fields_.goes_by_rates(field_) ||

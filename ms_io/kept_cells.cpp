@@ -25,7 +25,7 @@ class KeptBytes {
     if (bytes_.size() - at_ >= sizeof value) copy(&value, sizeof value);
     return value;
   }
-  /// Whether as many bytes follow.
+  /// True if as many bytes follow.
   bool has(std::uint64_t count) const { return bytes_.size() - at_ >= count; }
   void copy(void* to, std::size_t count) {
     std::memcpy(to, bytes_.data() + at_, count);

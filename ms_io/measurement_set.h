@@ -136,10 +136,10 @@ class MeasurementSet : public imager::VisibilitySource {
   /// flagged as a whole nor of one antenna. Reads and throws what reach() does.
   void visit_coordinates(const std::function<void(const imager::SampleCoordinates&)>& visit) const;
   std::unique_ptr<imager::BlockStream> open() const override;
-  /// The same set, which reads only channels that may come into a range of frequencies, in the frame that the selection names,
+  /// This set, which reads only channels that may come into a range of frequencies, in the frame that the selection names,
   /// in the course of a year; null where there are none. Samples of the part of the range `counted` are counted there already.
   std::unique_ptr<MeasurementSet> part(const FrequencyRange& range, const std::optional<FrequencyRange>& counted = {}) const;
-  /// The same set, of which this rank reads its share alone: rows(), samples(), read_at_once(), visit_coordinates() and open()
+  /// This set, of which this rank reads its share alone: rows(), samples(), read_at_once(), visit_coordinates() and open()
   /// are about the share, which may be empty. All else is about the whole set, and reach() is called by all ranks. `ranks` must
   /// outlive it.
   std::unique_ptr<MeasurementSet> share(const imager::Ranks& ranks) const;

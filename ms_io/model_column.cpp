@@ -107,7 +107,7 @@ class Filler {
  private:
   using Cells = casacore::Array<casacore::Complex>;
 
-  /// Whether all of these rows have data of that shape.
+  /// True if all of these rows have data of that shape.
   bool holds(const RowSpan& rows, const casacore::IPosition& shape) const {
     for (std::size_t row = rows.begin; row < rows.end; ++row) {
       if (!data_.isDefined(row) || !data_.shape(row).isEqual(shape)) return false;
@@ -140,7 +140,7 @@ void require_shape(const casacore::MeasurementSet& set, const std::string& path,
                                cells.shape(row).toString() + ", expected " + shape.toString());
 }
 
-/// Of a column with a cell for every row. Throws where the DATA_DESC_ID of one is none.
+/// The bytes of a column with a cell for every row. Throws where a row's DATA_DESC_ID is none.
 std::uintmax_t column_bytes(const casacore::MeasurementSet& set, const std::string& path,
                             const std::vector<casacore::IPosition>& shapes) {
   const SetupTable table(set, path);

@@ -42,7 +42,7 @@ std::optional<ModelJournal> read_journal(const casacore::Table& set, const std::
 void write_journal(const casacore::Table& set, const ModelJournal& journal);
 void remove_journal(const casacore::Table& set, const std::string& column);
 
-/// Whether another program has written all of the column since, so that the journal is void.
+/// True if another program has written all of the column since, so that the journal is void.
 bool outlived(const casacore::Table& set, const ModelJournal& journal);
 
 /// "MODEL_DATA of `path` is incomplete: 12 of 30 rows were written before by …".

@@ -248,8 +248,8 @@ class ModelWriter {
 
   enum class Left { beginning, other_data, changed, another };
 
-  /// What the column holds of the run that wrote the journal `before`: the beginning of this run, the beginning from other
-  /// data, changes by another program, or another run's rows.
+  /// Tells what the column holds of the run that wrote the journal `before`: the beginning of this run, the beginning from
+  /// other data, changes by another program, or another run's rows.
   Left what_is_left(const ModelJournal& before) {
     if (outlived(set_, before)) return Left::changed;
     if (journal_.identity.empty() || before.identity != journal_.identity) return Left::another;

@@ -50,7 +50,7 @@ struct ModelColumn {
   bool may_exist = true;             ///< and is then overwritten where the selection lies
   ModelOrigin origin = {};
 
-  /// Whether data − model replaces the data.
+  /// True if data − model replaces the data.
   bool in_place() const;
 };
 

@@ -30,7 +30,7 @@ ObservingPlace observing_place(const casacore::MeasurementSet& set, int observat
 std::optional<casacore::MPosition> antenna_place(const casacore::MeasurementSet& set, int antenna,
                                                  const ObservingPlace& telescope);
 
-/// Whether observations were made within a kilometre of each other.
+/// True if observations were made within a kilometre of each other.
 bool in_one_place(const casacore::MeasurementSet& set, const std::set<int>& observations);
 
 }  // namespace misfit::ms_io

@@ -137,7 +137,7 @@ void parse_alone(const casacore::MeasurementSet& set, const Selection& selection
   rows_of(set, expression);
 }
 
-/// Whether a time of the expression may be one without a date.
+/// True if a time of the expression may be one without a date.
 bool lacks_date(const std::string& times) {
   const std::vector<std::string> parts = split(times, ',');
   return !one_line(times).empty() &&
@@ -149,8 +149,8 @@ bool in_order_of_time(const casacore::MeasurementSet& set) {
   return std::is_sorted(time.begin(), time.end());
 }
 
-/// Whether the selection holds, [row]. casacore takes the date of a time without one from the first row, which is the earliest
-/// here.
+/// True where the selection holds, [row]. casacore takes the date of a time without one from the first row, which is the
+/// earliest here.
 std::vector<bool> rows_in_order_of_time(const casacore::MeasurementSet& set, casacore::MSSelection& selection) {
   const casacore::MeasurementSet sorted(set.sort("TIME"));
   const casacore::Table found = sorted(rows_of(sorted, selection));

@@ -36,10 +36,10 @@ struct ParsedSelection {
   /// The place of a window among the listed ones; its id where none are listed.
   std::size_t place_of(int window) const;
   bool uv_in_wavelengths() const;  ///< whether any range is
-  /// Whether one of `uv` holds, or there are none; in wavelengths, of the reference frequency. It is a function of its own
+  /// True if one of `uv` holds, or there are none; in wavelengths, of the reference frequency. It is a function of its own
   /// since TaQL takes 6 µs for a row.
   bool has_uv(const double* uvw_m, double reference_frequency_hz) const;
-  /// Whether `rows` or `listed_rows` hold for a row of the table as it was opened, whatever table the row is stored in. Throws
+  /// True if `rows` or `listed_rows` hold for a row of the table as it was opened, whatever table the row is stored in. Throws
   /// AipsError where they cannot be read.
   bool has_row(std::uint64_t row) const;
 };

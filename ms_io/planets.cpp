@@ -45,7 +45,7 @@ class PackagedData : public casacore::AppState {
   bool initialized() const override { return true; }
 };
 
-/// Whether casacore has a table of planets, which it then keeps.
+/// True if casacore has a table of planets, which it then keeps.
 bool has_table(MeasJPL::Files file) {
   double any = 0;
   try {

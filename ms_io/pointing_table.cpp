@@ -48,7 +48,7 @@ struct PointingTable::Entry {
   double reach_s(double row_interval_s) const {
     return interval_s > 0 ? std::max(interval_s, row_interval_s) : std::numeric_limits<double>::infinity();
   }
-  /// Whether this entry alone gives the antenna's direction at a time.
+  /// True if this entry alone gives the antenna's direction at a time.
   bool decides(double at_s, double row_interval_s) const {
     const bool stays = course || interval_s > 1.5 * row_interval_s;
     return stays && interval_s > 0 && std::abs(at_s - time_s) <= interval_s / 2;

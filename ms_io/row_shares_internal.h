@@ -24,7 +24,7 @@ class RowShares {
   OpenSets part(int index) const;
   /// [part]
   const std::vector<std::uint64_t>& samples() const { return samples_; }
-  /// Whether every set is whole in some part.
+  /// True if every set is whole in some part.
   bool whole_sets() const { return whole_sets_; }
 
  private:

@@ -21,7 +21,7 @@ namespace {
 
 using casacore::MDirection;
 
-/// Whether antennas on this MOUNT turn with the zenith. An empty MOUNT counts as alt-azimuth.
+/// True if antennas on this MOUNT turn with the zenith. An empty MOUNT counts as alt-azimuth.
 bool turns_with_zenith(const std::string& mount) {
   const std::string name = capitals(mount);
   return name.empty() || (name.rfind("ALT-AZ", 0) == 0 && name.find("ROTATOR") == std::string::npos);

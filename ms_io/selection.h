@@ -18,12 +18,12 @@ class PerSet {
   /// One value is for all sets, however many there are.
   explicit PerSet(std::vector<std::string> of_set);
 
-  /// Whether the expression is empty for every set, which selects all.
+  /// True if the expression is empty for every set, which selects all.
   bool empty() const;
   const std::string& of(std::size_t set) const { return of_set_.size() == 1 ? of_set_.front() : of_set_.at(set); }
   /// As given: one, or one for each set.
   const std::vector<std::string>& values() const { return of_set_; }
-  /// Whether so many sets can have it: it is one for all, or there is one for each.
+  /// True if so many sets can have it: it is one for all, or there is one for each.
   bool fits(std::size_t sets) const { return of_set_.size() == 1 || of_set_.size() == sets; }
 
  private:
@@ -56,7 +56,7 @@ struct Selection {
   /// The body that all fields follow with about_targets, whether they move or not: the name of a planet, or the path of an
   /// ephemeris; empty: each field follows what it is phased to.
   std::string body = "";
-  /// Whether a sample of Stokes I with one unusable parallel hand counts by the other, as in CASA's pseudoI.
+  /// True if a sample of Stokes I with one unusable parallel hand counts by the other, as in CASA's pseudoI.
   bool either_hand = false;
   /// FITS SPECSYS of the frame in which frequencies count, see parse_spectral_frame(), or SOURCE: the frame of the body
   /// followed, or else of the field's ephemeris; empty: the frame of the data.

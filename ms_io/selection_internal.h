@@ -80,7 +80,7 @@ struct SelectedRows {
   std::vector<std::string> remarks;                  ///< sentences for users on phase centres
   std::string spectral_frame;                        ///< in which frequencies count; empty: each window's own
 
-  /// Whether a setup's shift depends on time.
+  /// True if a setup's shift depends on time.
   bool shift_moves() const {
     return std::any_of(setups.begin(), setups.end(), [](const Setup& setup) { return setup.shift.moves(); });
   }

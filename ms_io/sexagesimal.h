@@ -8,7 +8,7 @@ namespace misfit::ms_io {
 /// Angles in sexagesimal parts, as directions are written: hours, as in 12h30m49.4s and 12:30:49.4, or degrees, as in
 /// +12d23m28s, +12:23:28.0 and +12.23.28.0.
 
-/// Whether `text` begins like a sexagesimal angle, so that it is nothing else: with digits, and behind them an h, a colon, a d
+/// True if `text` begins like a sexagesimal angle, so that it is nothing else: with digits, and behind them an h, a colon, a d
 /// that begins neither "deg" nor the end, or two dots.
 bool is_sexagesimal(std::string_view text);
 

@@ -147,7 +147,7 @@ void form_pair(const StokesRecipe& recipe, const float* __restrict data, const u
   unusable.add_to(counts, channels);
 }
 
-/// Whether form_pair can form a recipe: all shares are 1, and all factors are real.
+/// True if form_pair can form a recipe: all shares are 1, and all factors are real.
 bool is_pair(const StokesRecipe& recipe) {
   return recipe.terms.size() == 1 && recipe.used.size() == 2 && recipe.share[0] == 1 && recipe.share[1] == 1 &&
          recipe.terms[0][0].imag() == 0 && recipe.terms[0][1].imag() == 0;

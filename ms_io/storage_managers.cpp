@@ -26,7 +26,7 @@ void check_files(const std::string& table) {
       throw std::runtime_error("cannot read " + entry.path().string() + ": it is no regular file");
 }
 
-/// Whether this project reads cells of a subtable; casacore opens all subtables of a set, but reads only the headers of others.
+/// True if this project reads cells of a subtable; casacore opens all subtables of a set, but reads only the headers of others.
 bool reads_cells_of(const std::string& subtable) {
   static const std::set<std::string> read{"ANTENNA",      "DATA_DESCRIPTION", "FEED", "FIELD", "OBSERVATION",
                                           "POLARIZATION", "SPECTRAL_WINDOW",  "STATE"};

@@ -38,7 +38,7 @@ void require_main_columns(const casacore::Table& table, const std::string& path)
   if (!missing.empty()) throw std::runtime_error(path + " is a table but not a MeasurementSet: it has no column " + missing);
 }
 
-/// Whether the table has other columns than its lock file says: another process changed it just now, or was killed before it
+/// True if the table has other columns than its lock file says: another process changed it just now, or was killed before it
 /// wrote both.
 bool contradicts_lock_file(const casacore::AipsError& error) {
   return std::string(error.getMesg()).find("cannot sync table") != std::string::npos;
