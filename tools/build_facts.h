@@ -2,7 +2,7 @@
 
 namespace misfit::tools {
 
-/// What the build was configured with; "" stands for none.
+/// The configuration of the build; "" stands for none.
 struct BuildFacts {
   const char* commit;      ///< of git; none where the sources are no checkout
   const char* compiler;    ///< name and version

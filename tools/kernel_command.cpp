@@ -102,7 +102,7 @@ void print(const kernels::KernelTable& table, const std::string& path) {
   if (!table.version.empty()) print_line("written by", "misfit " + table.version);
 }
 
-/// Whether the polynomials differ from the function by more than rounding, and by more than a part of the error.
+/// True if the polynomials differ from the function by more than rounding, and by more than a part of the error.
 bool is_rough(const kernels::Kernel& kernel) {
   constexpr double rounding = 1e-12, part_of_error = 5e-3;
   const double part = kernels::part_in_last_terms(kernel.polynomial);

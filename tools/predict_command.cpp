@@ -115,7 +115,7 @@ std::vector<imager::DirectionCosines> bright_places(const std::array<std::vector
   return places;
 }
 
-/// Whether an image is 0, except for pixels beyond the horizon, which may be NaN.
+/// True if an image is 0, except for pixels beyond the horizon, which may be NaN.
 bool is_zero(const imager::Image& image) {
   return std::none_of(image.pixel.begin(), image.pixel.end(), [](double value) { return std::abs(value) > 0; });
 }

@@ -13,7 +13,7 @@ struct Interrupted : std::runtime_error {
 /// the process at once, whoever calls this again.
 void catch_interrupts();
 bool interrupted();
-/// Whether the user pressed Ctrl-C twice in another program's process: stages that stop by themselves then end at once, too.
+/// True if the user pressed Ctrl-C twice in another program's process: stages that stop by themselves then end at once, too.
 bool interrupted_again();
 
 /// As long as it lives, work is done in another program's process, such as Python's. catch_interrupts() does nothing then.

@@ -28,7 +28,7 @@ CLI::Validator also_named(const std::map<std::string, std::string>& names);
 /// Writes whole numbers such as 512.0 or 1e5 as 512 or 100000; for Option::transform().
 CLI::Validator whole_number();
 
-/// Whether an option takes values besides those that --help lists.
+/// An option refuses or takes values besides those that --help lists.
 enum class Others { refused, possible };
 
 /// Stands for the other values in the list of --help.

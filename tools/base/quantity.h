@@ -12,7 +12,7 @@ double parse_frequency_hz(const std::string& text);        ///< Hz, kHz, MHz, GH
 double parse_velocity_m_s(const std::string& text);        ///< m/s, km/s; none alone
 double parse_uv_distance_lambda(const std::string& text);  ///< lambda, klambda, Mlambda; alone: wavelengths
 
-/// Whether such a quantity ends in a unit.
+/// True if such a quantity ends in a unit.
 bool has_unit(const std::string& text);
 
 }  // namespace misfit::tools

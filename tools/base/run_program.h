@@ -7,7 +7,7 @@
 
 namespace misfit::tools {
 
-/// What becomes of a program when the user asks this one to stop: it goes on to its end, or is asked to end too.
+/// A program goes on to its end when the user asks this one to stop, or is asked to end too.
 enum class OnInterrupt { finish, stop };
 
 /// Runs a program found on PATH, or at a path, in `folder`, without input; what it says on both streams is left in the file

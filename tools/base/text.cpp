@@ -60,7 +60,7 @@ std::size_t utf8_length(std::string_view text) {
   return length;
 }
 
-/// Whether a character is a control character of ASCII or of Latin-1 (U+0080 to U+009F).
+/// True if a character is a control character of ASCII or of Latin-1 (U+0080 to U+009F).
 bool is_control(std::string_view character) {
   const auto first = static_cast<unsigned char>(character.front());
   return first < ' ' || first == 0x7f || (first == 0xc2 && static_cast<unsigned char>(character[1]) < 0xa0);

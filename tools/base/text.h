@@ -10,7 +10,7 @@ namespace misfit::tools {
 /// `text` without the white space around it.
 std::string_view trimmed(std::string_view text);
 
-/// What stands between the commas of `text`, trimmed: one part more than it has commas.
+/// The parts of `text` between its commas, trimmed: one part more than it has commas.
 std::vector<std::string_view> split_at_commas(std::string_view text);
 
 /// The finite number that `text` is as a whole, with a sign or without; nothing where it is none.

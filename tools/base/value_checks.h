@@ -12,7 +12,7 @@ class CheckingProgram : public CLI::App {
  public:
   using CLI::App::App;
 
-  /// What is wrong among the values that `command` was given, in words; empty where nothing is, or it has no check.
+  /// Says which of the values that `command` was given is wrong; empty where none is, or it has no check.
   std::string wrong_value(const CLI::App& command) const;
 
  private:

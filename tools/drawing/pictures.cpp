@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether a PNG file ends with its last chunk, IEND; gnuplot says nothing when the disk is full.
+/// True if a PNG file ends with its last chunk, IEND; gnuplot says nothing when the disk is full.
 bool is_complete(const std::string& png) {
   return png.ends_with(std::string("IEND\xae\x42\x60\x82", 8));
 }

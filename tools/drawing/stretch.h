@@ -7,7 +7,7 @@
 
 namespace misfit::tools {
 
-/// What the shades of a picture are to show.
+/// The values that the shades of a picture are to show.
 enum class Shades {
   brightness,  ///< sources on noise: from a little below the noise up to the brightest pixel
   about_zero,  ///< values of either sign, such as a residual: as far down as up, 0 in the middle

@@ -6,7 +6,7 @@
 
 namespace misfit::tools {
 
-/// What an image is divided by along an axis, 1/h(x), as a Chebyshev series: Σ_k coefficient[k] T_k(2(x/x0)² − 1) for
+/// The divisor 1/h(x) of an image along an axis, as a Chebyshev series: Σ_k coefficient[k] T_k(2(x/x0)² − 1) for
 /// |x| ≤ x0, and its value at x0 beyond, where the image is thrown away.
 struct DivisorSeries {
   double x0 = 0.25;

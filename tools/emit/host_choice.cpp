@@ -17,7 +17,7 @@ double error_of(const HostRequest& r, const HostKernel& k) {
   return realised_in(*r.host, k).rms;
 }
 
-/// Whether the number of entries a cell must be odd, as for tables that are read by the nearest entry: with an even number an
+/// True if the number of entries a cell must be odd, as for tables that are read by the nearest entry: with an even number an
 /// entry lies where cells meet and C may jump.
 bool is_odd(const HostRequest& r) {
   return r.interpolation == 0;
@@ -87,7 +87,7 @@ std::optional<HostKernel> reaching(const HostRequest& r, const kernels::Kernel& 
   return with(r, kernel, entries);
 }
 
-/// Whether a wider kernel is worth its width: it costs the same with a smaller table, or more with a table ten times smaller.
+/// True if a wider kernel is worth its width: it costs the same with a smaller table, or more with a table ten times smaller.
 bool is_better(const Host& host, const HostKernel& wider, const HostKernel& found) {
   const bool as_cheap = host.taps_of(wider.kernel.width()) == host.taps_of(found.kernel.width());
   return wider.per_cell * (as_cheap ? 1 : 10) < found.per_cell;

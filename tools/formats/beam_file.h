@@ -6,7 +6,7 @@
 
 namespace misfit::tools {
 
-/// What a beam's pixels are.
+/// The kind of a beam's pixels.
 enum class BeamPixels { power, voltage };
 
 /// Reads a beam from a FITS image, or a cube whose third or fourth axis is the frequency: its pixels are a power or a voltage,

@@ -185,7 +185,7 @@ imager::MajorCycle unpacked_cycle(const json& c) {
   return cycle;
 }
 
-/// Whether two values are equal, or the same numbers written differently.
+/// True if two values are equal, or the same numbers written differently.
 bool means_the_same(const json& a, const json& b) {
   if (a == b) return true;
   if (!a.is_string() || !b.is_string()) return false;
@@ -193,7 +193,7 @@ bool means_the_same(const json& a, const json& b) {
   return one && other && *one == *other;
 }
 
-/// The same components among the scales of another model.
+/// The components of `model` among the scales of `like`.
 imager::ComponentModel with_scales_of(const imager::ComponentModel& like, const imager::ComponentModel& model,
                                       const std::string& path) {
   std::vector<imager::Component> components = model.components();

@@ -29,7 +29,7 @@ std::vector<imager::Source> read_component_list(const std::string& path, const i
 std::array<std::vector<imager::Source>, 4> read_stokes_components(const std::string& path,
                                                                   const imager::SkyDirection& phase_centre);
 
-/// Whether the list has columns of right ascension and declination, whatever else is wrong with it. Throws std::runtime_error
+/// True if the list has columns of right ascension and declination, whatever else is wrong with it. Throws std::runtime_error
 /// where it cannot be read.
 bool lists_directions(const std::string& path);
 

@@ -19,7 +19,7 @@ std::string described(const imager::SpectralAxis& axis) {
          (axis.in_wavelength ? " at first, evenly in wavelength," : ",") + " from " + first + " on" + frame;
 }
 
-/// Whether two axes have the same planes. A file whose frame is not known may be in any; an image without a frame, whose
+/// True if two axes have the same planes. A file whose frame is not known may be in any; an image without a frame, whose
 /// frequencies are the data's, is in no frame that a file names.
 bool same_planes(const imager::SpectralAxis& a, const imager::SpectralAxis& b) {
   const auto near = [&](int plane) { return std::abs(b.plane_of(a.frequency_hz(plane)) - plane) < 0.1; };

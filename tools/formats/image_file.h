@@ -17,7 +17,7 @@ std::unique_ptr<imager::ImageReader> open_image_file(const std::string& path, im
 /// file has the image's planes, to a tenth of their width. Throws std::runtime_error(`path` …) where it has others.
 int channel_for(const imager::ImageReader& file, const std::string& path, const imager::SpectralAxis& axis, int channel);
 
-/// Whether the band that a file states and the band of data or an image lie apart by more than a thousandth of the frequency,
+/// True if the band that a file states and the band of data or an image lie apart by more than a thousandth of the frequency,
 /// by which frames may shift bands. A file that states no band lies apart from none.
 bool bands_apart(const imager::Observation& file, const imager::Observation& data);
 

@@ -27,7 +27,7 @@ bool is_image(const std::string& path) {
   return file.read(begin.data(), 6) && (begin == "SIMPLE" || !imager::compression_of(begin).empty());
 }
 
-/// Whether a mask is region text in place of a path: as in tclean, where no file has that name.
+/// True if a mask is region text in place of a path: as in tclean, where no file has that name.
 bool is_text_itself(const std::string& mask) {
   std::error_code reason;
   if (std::filesystem::exists(mask, reason)) return false;

@@ -17,7 +17,7 @@ using imager::SkyGrid;
 /// The distances, as a part of a pixel, up to which pixels of two grids count as the same, and from which on the nearest pixel
 /// may be another.
 constexpr double same_pixel = 0.01, nearest_pixel = 0.45;
-/// Of two pixels equally near, the one to the right or above is taken: rounding does not choose.
+/// If two pixels are equally near, the one to the right or above is taken: rounding does not choose.
 constexpr double tie = 1e-6;
 
 std::string size_text(int width, int height) {

@@ -43,7 +43,7 @@ char lower(char letter) {
   return static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
 }
 
-/// Whether a unit is Jy/pixel, which programs write in upper and lower case.
+/// True if a unit is Jy/pixel, which programs write in upper and lower case.
 bool is_jy_per_pixel(std::string unit) {
   for (char& letter : unit) letter = lower(letter);
   return unit == "jy/pixel";

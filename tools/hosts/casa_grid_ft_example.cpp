@@ -5,8 +5,8 @@
 // GridFT has an own ConvolveGridder, but does not call its grid() and degrid(). put() and get() hand its table, convFunc_p's
 // support and sampling, and cells and offsets found by CASA's own nint, to loops in Fortran; only correctX1D() is called,
 // before degridding and after gridding. The loops divide the taps of a visibility by their sum as ConvolveGridder does, so that
-// ConvolveGridderTable's correction is right for them. What such a subclass changes is therefore the table (W ≤ 7) and the
-// correction: convolve_gridder_table.h says what error remains. Entries a cell cost memory only: ask for 1e5.
+// ConvolveGridderTable's correction is right for them. Such a subclass therefore changes the table (W ≤ 7) and the correction:
+// convolve_gridder_table.h says what error remains. Entries a cell cost memory only: ask for 1e5.
 //
 // For polynomial taps and wider kernels, CasacoreGridder, put() and get() must be written anew around its grid() and degrid(),
 // with all else that they do: interpolation in frequency, flags and weights, rotateUVW() and its phasor, the UVW's sign, maps

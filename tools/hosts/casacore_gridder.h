@@ -24,9 +24,9 @@ struct CasacoreFootprint;
 /// correct() and correctX1D() are what the image is divided by, 1/h at x = (loc − len/2)/len with integer division. Beyond the
 /// kernel's x0 there is no image to correct; |1/h| is kept within [1e-15, 1e15] there, so that all remains finite.
 ///
-/// What a grid of Complex holds is rounded to 2^-24, which the correction magnifies by noise_gain() on each axis: 8 cells are
-/// about as many as single precision repays. Padded by 2 the rounding leaves 5e-8 to 1e-7 then; padded by 1.2, 1e-5, and more
-/// for wider kernels.
+/// The values of a grid of Complex are rounded to 2^-24, which the correction magnifies by noise_gain() on each axis: 8 cells
+/// are about as many as single precision repays. Padded by 2 the rounding leaves 5e-8 to 1e-7 then; padded by 1.2, 1e-5, and
+/// more for wider kernels.
 ///
 /// cFunction() and cSampling() are lacking on purpose: gridding with a table of C makes other taps, which need another
 /// correction. convolve_gridder_table.h has both for widths to 7.

@@ -24,7 +24,7 @@ void list_kernels(CLI::Option& option);
 /// Declares --kernel-folder, whose default is $MISFIT_KERNEL_FOLDER.
 void declare_kernel_folder(CLI::App& command, std::string& folder);
 
-/// Whether the name is a kernel-table file: none of the catalogue, but something with a slash, with the ending .fits, or that
+/// True if the name is a kernel-table file: none of the catalogue, but something with a slash, with the ending .fits, or that
 /// exists and is not a library's name too.
 bool is_kernel_file(const KernelSource& kernel);
 

@@ -34,7 +34,7 @@ struct CommandFacts {
   std::vector<CommandFacts> commands;
 };
 
-/// What `command` declares, in the order of --help; `before` are the words of the command that it belongs to.
+/// The declarations of `command`, in the order of --help; `before` are the words of the command that it belongs to.
 CommandFacts facts_of(const CLI::App& command, const std::vector<std::string>& before = {});
 
 /// The words with `separator` between them: "misfit-report-kernels".

@@ -19,9 +19,9 @@ class PointingBeam {
   virtual imager::Image on(const imager::ImageHeader& mosaic, int channel, int threads) const = 0;
   /// Where it comes from, in words.
   virtual std::string origin() const = 0;
-  /// Whether it lies about the image's reference direction, wherever antennas pointed.
+  /// True if it lies about the image's reference direction, wherever antennas pointed.
   virtual bool is_about_reference() const = 0;
-  /// What may be wrong with it, a sentence each.
+  /// Sentences on what may be wrong with the beam.
   virtual std::vector<std::string> doubts() const { return {}; }
 };
 

@@ -4,7 +4,7 @@
 
 namespace misfit::tools {
 
-/// Whether a launcher of MPI programs started this process and others: Open MPI's, or one that speaks PMI or PMIx, as srun may.
+/// True if a launcher of MPI programs started this process and others: Open MPI's, or one that speaks PMI or PMIx, as srun may.
 /// A script that one process runs may start misfit again and again, which MPI does not allow.
 inline bool was_launched() {
   const char* const size = std::getenv("OMPI_COMM_WORLD_SIZE");

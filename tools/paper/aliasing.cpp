@@ -22,7 +22,7 @@ constexpr int pixels = 32;
 constexpr int alias_fft_size = 2 * pixels;
 constexpr double farthest = 3.25;  // sizes of the FFT
 constexpr int fields = 3;          // that alias into the image, on either side
-/// Of the FFT, in pixels, so that sources are pixels of the endless plane.
+/// The steps between sources in pixels of the FFT, so that sources are pixels of the endless plane.
 constexpr int step = 2;
 
 /// The levels of unit sources at the positions x, in sizes of the FFT, where their aliases fall into the image: h(x − n) c(x)

@@ -12,8 +12,8 @@
 
 namespace misfit::tools {
 
-/// What to simulate. Sources lie on multiples of 15 cells of the card, so that they are pixels where 15 is a multiple of
-/// `cells_a_pixel`.
+/// The scene to simulate. Its sources lie on multiples of 15 cells of the card, so that they are pixels where 15 is a multiple
+/// of `cells_a_pixel`.
 struct CardSceneOptions {
   int pixels = 800;  ///< of both axes
   int cells_a_pixel = 1;

@@ -56,7 +56,7 @@ std::size_t write_data(std::ostream& script, const Figure& figure, std::size_t n
   return points;
 }
 
-/// Whether gnuplot labels every power of ten on a logarithmic axis; where it leaves some out, its finer marks confuse.
+/// True if gnuplot labels every power of ten on a logarithmic axis; where it leaves some out, its finer marks confuse.
 bool labels_each_decade(const Axis& axis, const Figure& figure, std::vector<double> Series::*values) {
   constexpr double most_decades = 8;
   if (!axis.logarithmic) return true;

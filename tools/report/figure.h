@@ -7,7 +7,7 @@
 
 namespace misfit::tools {
 
-/// A curve: y over x, of one length. What is not finite, or not positive on a logarithmic axis, leaves a gap.
+/// A curve: y over x, of one length. Values that are not finite, or not positive on a logarithmic axis, leave a gap.
 struct Series {
   std::string label;  ///< for the legend, unlike all others of the figure
   std::vector<double> x;

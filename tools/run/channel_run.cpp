@@ -23,7 +23,7 @@ bool MadeChannel::stopped() const {
 
 namespace {
 
-/// Whether dirty images are used only to begin CLEAN. With several Stokes parameters or channels some may have nothing to
+/// True if dirty images are used only to begin CLEAN. With several Stokes parameters or channels some may have nothing to
 /// clean.
 bool images_begin_clean(const ChannelScene& scene) {
   const TypedClean& o = scene.options.clean;

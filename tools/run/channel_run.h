@@ -20,7 +20,7 @@
 
 namespace misfit::tools {
 
-/// Takes the words and times of a run while it makes its one channel. Of several channels each keeps its own, and the run tells
+/// Takes the words and times of a run while it makes its one channel. Each of several channels keeps its own, and the run tells
 /// them one channel after the other.
 struct ToldAsItGoes {
   ProgressLine& progress;
@@ -55,7 +55,7 @@ struct MadeChannel {
   std::vector<imager::CleanResult> cleaned{};  ///< [Stokes], the models that --savemodel needs; not sent to other ranks
 
   bool empty() const { return report.sums.used == 0; }
-  /// Whether the user ended its CLEAN.
+  /// True if the user ended its CLEAN.
   bool stopped() const;
 };
 

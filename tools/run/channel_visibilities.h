@@ -32,8 +32,8 @@ class ChannelSamples {
   imager::StreamedVisibilities stream_;
 };
 
-/// The visibilities of a run's channels. Those of the one channel of the whole band stream from the sets; those of a cube's
-/// channels are held for some channels at a time, or read again by each, as ChannelBatches says.
+/// The visibilities of a run's channels. Visibilities of the one channel of the whole band stream from the sets; visibilities
+/// of a cube's channels are held for some channels at a time, or read again by each, as ChannelBatches says.
 class ChannelVisibilities {
  public:
   /// The visibilities of one channel. `set` is kept by reference.
@@ -58,7 +58,7 @@ class ChannelVisibilities {
   /// The work on a batch in words, "images 4 to 7 of 16".
   std::string work_on(const imager::PlaneRange& batch) const;
 
-  /// Whether each channel of a cube reads the sets itself; then count() is to be called with what it read.
+  /// True if each channel of a cube reads the sets itself; then count() is to be called with what it read.
   bool each_reads() const { return sampling_ != nullptr && batches_.read_again; }
   void count(const imager::SampleCounts& counts);
   /// The counts of all samples read so far; the channels count the used ones themselves.

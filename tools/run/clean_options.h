@@ -46,7 +46,7 @@ struct TypedClean {
   std::string savemodel = "none";
   bool restart = false;
 
-  /// Whether there is a CLEAN, if only of a model to begin with, whose residual and restored image are then made.
+  /// True if there is a CLEAN, if only of a model to begin with, whose residual and restored image are then made.
   bool runs() const { return niter > 0 || !startmodel.empty(); }
 };
 

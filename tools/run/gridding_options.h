@@ -32,7 +32,7 @@ void declare(CLI::App& command, TypedGridding& options);
 /// Checks what needs neither the data nor the kernel's solution. Throws as check(const ImageOptions&) does.
 void check(const TypedGridding& options);
 
-/// Whether the options leave nothing of the kernel to choose: a file, or width and padding. Then no accuracy need be asked.
+/// True if the options leave nothing of the kernel to choose: a file, or width and padding. Then no accuracy need be asked.
 bool kernel_is_given(const TypedGridding& options);
 
 /// The tables that --evaluation names, if it does.

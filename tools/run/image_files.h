@@ -13,7 +13,7 @@ namespace misfit::tools {
 /// CFITSIO and casacore need not be thread-safe: a thread that reads or writes images while others may do so holds this.
 std::mutex& image_files_mutex();
 
-/// What --outformat names: fits, casa or both.
+/// The values of --outformat: fits, casa and both.
 const std::vector<std::string>& image_formats();
 
 /// 64-bit where the accuracy asked for is below 1e-7, 32-bit otherwise.
@@ -25,7 +25,7 @@ std::vector<std::string> image_paths(const std::string& name, const std::string&
 /// The path of an image, the newer one of both formats; nothing where there is none.
 std::optional<std::string> newest_image(const std::string& name);
 
-/// Whether misfit wrote the image at this path: people keep masks and models of theirs under our names too.
+/// True if misfit wrote the image at this path: people keep masks and models of theirs under our names too.
 bool is_own_image(const std::string& path);
 
 /// Throws std::runtime_error where an image's path holds something that no image may replace; `option` gave the name.

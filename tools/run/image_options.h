@@ -51,13 +51,13 @@ struct ImageOptions {
   ScaleOptions scale;
   bool quiet = false;
 
-  /// Whether CLEAN keeps to a mask, given or made.
+  /// True if CLEAN keeps to a mask, given or made.
   bool masks_clean() const { return !clean.mask.empty() || clean.usemask == "auto" || primary_beam.pbmask > 0; }
-  /// Whether masks need the noise within the primary beam, wherever that is known.
+  /// True if masks need the noise within the primary beam, wherever that is known.
   bool measures_noise_in_beam() const { return clean.runs() && clean.usemask == "auto" && !clean.fastnoise; }
-  /// Whether pointings become one image; a run decides it where it is left to be chosen.
+  /// True if pointings become one image; a run decides it where it is left to be chosen.
   bool makes_mosaic() const { return gridding.gridder == "mosaic"; }
-  /// Whether its images, and its model, are the sky times its primary beam.
+  /// True if its images, and its model, are the sky times its primary beam.
   bool makes_flat_noise() const { return makes_mosaic() && mosaic.normtype == "flatnoise"; }
   /// The primary beam below which nothing of a mosaic is cleaned: --pblimit, unless it is below 0; 0 = none.
   double mosaic_limit() const { return makes_mosaic() && primary_beam.pblimit >= 0 ? primary_beam.limit() : 0; }

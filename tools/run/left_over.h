@@ -7,7 +7,7 @@
 
 namespace misfit::tools {
 
-/// Whether the user named the file as a mask or a start model: such a file stays as it is.
+/// True if the user named the file as a mask or a start model: such a file stays as it is.
 bool is_input(const ImageOptions& options, const std::string& path);
 
 /// Removes files that a run of this name was writing when it was killed.

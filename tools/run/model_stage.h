@@ -23,7 +23,7 @@ struct SavedModel {
   imager::TaylorExpansion expansion{};                    ///< of the models' spectra
 };
 
-/// Whether a column can be made of images of these: I, Q, U and V, or parallel hands of one kind of feed.
+/// True if a column can be made of images of these: I, Q, U and V, or parallel hands of one kind of feed.
 bool saves_model(const std::vector<imager::Stokes>& stokes);
 
 /// A warning that names what MODEL_DATA of `set` has 0 for, since there is no image of it: beside images of hands the other

@@ -11,7 +11,7 @@
 
 namespace misfit::tools {
 
-/// Whether --gridder auto makes a mosaic of these sets: fields that point apart, of antennas whose beams are known, are phased
+/// True if --gridder auto makes a mosaic of these sets: fields that point apart, of antennas whose beams are known, are phased
 /// to one centre, and are not to be averaged.
 bool is_mosaic(const ImageOptions& options, const ms_io::MeasurementSet& set);
 

@@ -14,7 +14,7 @@
 namespace misfit::tools {
 namespace {
 
-/// Whether the file that was opened still lies under its name: the last holder of the lock removes it.
+/// True if the file that was opened still lies under its name: the last holder of the lock removes it.
 bool is_in_place(int file, const std::string& path) {
   struct stat opened = {};
   struct stat named = {};

@@ -7,7 +7,7 @@
 
 namespace misfit::tools {
 
-/// What action() returns; where it finds nothing usable in the MeasurementSet `vis`, the message names that.
+/// Returns action(); where that finds nothing usable in the MeasurementSet `vis`, the message names the set.
 template <typename Action>
 auto naming(const std::string& vis, const Action& action) {
   try {

@@ -78,7 +78,7 @@ void sort_out(const std::vector<imager::OutsideSource>& all, OutsideReport& r) {
   std::stable_sort(r.harmless.begin(), r.harmless.end(), brighter);
 }
 
-/// Whether there is flux elsewhere: CLEAN leaves about a hundredth of sources between pixels; three hundredths are something
+/// True if there is flux elsewhere: CLEAN leaves about a hundredth of sources between pixels; three hundredths are something
 /// else.
 bool something_elsewhere(const imager::WideSearch& search) {
   double found_jy = 0;

@@ -8,7 +8,7 @@ class App;
 
 namespace misfit::tools {
 
-/// What is to be made of the primary beam, as typed.
+/// The options of the primary beam, as typed.
 struct TypedPrimaryBeam {
   bool pbcor = false;
   double pblimit = 0;        ///< 0: not given; below 0 other images than .pb and .image.pbcor are not masked
@@ -17,9 +17,9 @@ struct TypedPrimaryBeam {
   bool where_known = false;  ///< .pb is wanted, but only where antennas have a simple beam: that of --products
 
   bool wanted() const { return where_known || required(); }
-  /// Whether a run without it is of no use: with --pbcor, --pbmask or --beam, or --pblimit alone.
+  /// True if a run without it is of no use: with --pbcor, --pbmask or --beam, or --pblimit alone.
   bool required() const { return pbcor || pbmask > 0 || !beam.empty() || (pblimit != 0 && !where_known); }
-  /// Whether masks say where other images lie below the limit.
+  /// True if masks say where other images lie below the limit.
   bool masks_others() const { return wanted() && pblimit > 0; }
   /// The value below which images have no values.
   double limit() const;

@@ -18,7 +18,7 @@
 namespace misfit::tools {
 namespace {
 
-/// Whether CLEAN ran in a channel.
+/// True if CLEAN ran in a channel.
 bool cleaned(const ChannelReport& channel) {
   return channel.stokes.front().clean.has_value();
 }
@@ -66,7 +66,7 @@ std::unique_ptr<NameLock> claim_product_paths(const ImageOptions& o) {
 std::vector<imager::HeaderCard> error_cards(const RunReport& report) {
   std::vector<imager::HeaderCard> cards;
   if (report.accuracy != 0) cards.push_back({"ERRASKED", report.accuracy, "accuracy asked: RMS error over image RMS"});
-  // Of all channels and Stokes parameters; channels without samples have none.
+  // Adds the largest number of all channels and Stokes parameters; channels without samples have none.
   const auto add_largest = [&](const char* keyword, const auto& part, const auto& number, const char* comment) {
     double largest = -1;
     for (const ChannelReport& channel : report.channels)
@@ -109,7 +109,7 @@ struct Products::OfBeam {
   }
 };
 
-/// What was written of the channels of a cube.
+/// The written images from which a cube's channels are restored.
 struct Products::Written {
   std::unique_ptr<imager::ImageReader> models;
   std::unique_ptr<imager::ImageReader> residuals;
@@ -356,7 +356,7 @@ imager::Image Products::restore(const imager::Image& model, const imager::Image&
   return imager::restored({model, residual}, beam, header_.geometry.cell_rad, workers_.threads);
 }
 
-/// Of models and residuals as they were written.
+/// Restores the models and residuals as they were written.
 void Products::restore_in_common(std::vector<ChannelReport>& channels) {
   std::vector<imager::Beam> beams;
   for (const ChannelReport& channel : channels)

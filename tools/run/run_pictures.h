@@ -20,8 +20,8 @@ namespace misfit::tools {
 std::unique_ptr<imager::ImageReader> open_written(const ImageOptions& options, const std::string& kind);
 
 /// The pictures of a run, <imagename>.<name>.png, drawn while the caller does other things. Images are looked at until
-/// functions return. Of the whole band all images are drawn as they are made, each Stokes parameter by itself; of a cube the
-/// channel that the report shows, once its images have been written. Stage timed: "draw pictures".
+/// functions return. All images of a whole band are drawn as they are made, each Stokes parameter by itself; of a cube, the
+/// channel that the report shows is drawn once its images have been written. Stage timed: "draw pictures".
 class RunPictures {
  public:
   /// The arguments are kept by reference.
@@ -40,7 +40,7 @@ class RunPictures {
   std::string finish(std::vector<PagePicture>& drawn);
 
  private:
-  /// What one picture shows.
+  /// One picture to draw.
   struct Shown {
     std::string name;  ///< the middle of its file's name
     std::string title;

@@ -73,8 +73,8 @@ double largest_expected_error(const RunReport& report);
 /// `beam_by_quadrant`, `memory_gib_estimated`, `warnings`, `command_line`, `outside`, `outside_search`, `timings_s.total`,
 /// `timings_expected_s` (by stage, with `total`; null where nothing was expected), `clean.major_cycles_log`, `clean.kept_cycle`
 /// (whose model was kept), `residual_histogram` (see histogram_json()) and `stokes` (a list of {stokes, error, noise, clean,
-/// residual_histogram}, of which the first is what the report's own keys hold) are additions. Of a cube these keys tell of the
-/// plane that is drawn, `spectral_axis` of its planes' frequencies, `planes` (a list of {plane, frequency_hz, used, beam,
+/// residual_histogram}, of which the first is what the report's own keys hold) are additions. For a cube, these keys tell of
+/// the plane that is drawn, `spectral_axis` of its planes' frequencies, `planes` (a list of {plane, frequency_hz, used, beam,
 /// noise, brightest_jy, clean, stokes}) of each, `plane_samples` and `samples_outside_planes` of usable samples in them and in
 /// none; they are null otherwise. Where several planes are made at a time, `timings_s` counts the seconds that they spent on a
 /// stage together over the number of planes made at a time, so that the stages add up to the run's wall clock, as far as all

@@ -29,7 +29,7 @@ SetBeams set_beams(const ms_io::MeasurementSet& set, const DishBeams& beams);
 /// they point.
 std::vector<double> told_apart_by(const SetBeams& beams, const imager::Observation& observation);
 
-/// Whether any field's antennas see any of these places, seen from the phase centre, anywhere in the band.
+/// True if any field's antennas see any of these places, seen from the phase centre, anywhere in the band.
 bool sees_any(const SetBeams& beams, const std::vector<imager::DirectionCosines>& places,
               const imager::Observation& observation);
 

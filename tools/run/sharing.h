@@ -12,14 +12,15 @@
 
 namespace misfit::tools {
 
-/// How the ranks of a run share it. Of one channel each rank has a part of the samples, and rank 0 the images of all samples;
-/// of a cube's channels each rank makes some, from all samples. Functions about all ranks are called by all ranks.
+/// How the ranks of a run share it. With one channel, each rank has a part of the samples, and rank 0 the images of all
+/// samples; with a cube, each rank makes some of its channels from all samples. Functions about all ranks are called by all
+/// ranks.
 class Sharing {
  public:
   /// `ranks` is kept by reference.
   Sharing(const imager::Ranks& ranks, bool of_channels) : ranks_(ranks), of_channels_(of_channels) {}
 
-  /// Whether this rank has whole images of what it makes.
+  /// True if this rank has whole images of what it makes.
   bool images_here() const { return of_channels_ || ranks_.first(); }
   /// The most channels of these that one rank makes.
   int channels_here(int channels) const { return (channels + ranks_.size() - 1) / ranks_.size(); }

@@ -62,7 +62,7 @@ class TimeForecast {
   std::vector<StageSeconds> expected(const RunWork& work) const { return expected(work, work); }
   /// The seconds expected by the speed of runs as large as `as_large`, so that works of several sizes compare.
   std::vector<StageSeconds> expected(const RunWork& work, const RunWork& as_large) const;
-  /// Whether runs like this have been timed here.
+  /// True if runs like this have been timed here.
   bool knows(const RunWork& work) const;
   /// Takes in what a run took, and keeps it. Stages of less than 5 ms say nothing.
   void learn(const RunWork& work, const imager::StageTimes& took);

@@ -15,8 +15,8 @@ struct CurvePoint {
 };
 
 /// Peak residual, noise and depth on a log scale above the model's flux on a linear one, both against the iterations, as an SVG
-/// element for an HTML page. What is not positive on the log scale, or not finite, is left out; the whole is empty where the
-/// peak is known for fewer than two numbers of iterations.
+/// element for an HTML page. Values that are not positive on the log scale, or not finite, are left out; the whole is empty
+/// where the peak is known for fewer than two numbers of iterations.
 std::string clean_curve(const std::vector<CurvePoint>& points);
 
 }  // namespace misfit::tools

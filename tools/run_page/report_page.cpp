@@ -206,7 +206,7 @@ std::string stokes_section(const json& list) {
       rows);
 }
 
-/// Whether nothing was given for an option.
+/// True if nothing was given for an option.
 bool is_empty(const json& value) {
   return value.empty() || plain(value).empty() || value == "[]";
 }

@@ -46,7 +46,8 @@ void add_to(Fingerprint& print, const imager::VisibilityBlock& block) {
   for (std::size_t k = 0; k < block.uvw_m.size(); ++k) print[4] += apart[k % 3] * block.uvw_m[k];
 }
 
-/// The pixels of each place: as many as some seconds of direct sums allow, or a minute. The same for the same scene.
+/// The pixels of each place: as many as some seconds of direct sums allow, or a minute. Equal scenes have equal numbers of
+/// pixels.
 int pixels_for(std::uint64_t samples, bool quick) {
   const double terms = quick ? 1e9 : 4e9, least = quick ? 128 : 512;
   return static_cast<int>(std::clamp(terms / std::max(1.0, static_cast<double>(samples)), least, 8 * least));

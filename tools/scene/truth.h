@@ -43,7 +43,7 @@ class SceneTruth {
   /// To be called when all blocks were compared.
   void finish(SceneErrors& errors) const;
 
-  /// What was read and left out.
+  /// The counts of samples that were read and left out.
   const imager::SampleCounts& counts() const { return counts_; }
   /// Seconds that the direct sums took for each pixel.
   double seconds_a_pixel() const { return seconds_a_pixel_; }

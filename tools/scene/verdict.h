@@ -15,7 +15,7 @@ std::vector<CostAndError> predict_costs(const std::vector<PointResult>& results)
 /// How well times and errors are known, in a sentence.
 std::string words_on_noise(const std::vector<PointResult>& results);
 
-/// How much the machine's speed changed, in a sentence. Of results as they were measured, not pooled.
+/// How much the machine's speed changed, in a sentence. `results` are as they were measured, not pooled.
 std::string words_on_speed(const std::vector<PointResult>& results);
 
 /// A verdict on the front of error against seconds where errors lie within [1e-7, 1e-3]: that it consists of least-misfit and

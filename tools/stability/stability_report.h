@@ -9,11 +9,11 @@
 
 namespace misfit::tools {
 
-/// What rounding does to gridding functions, to gridding, to sums and to whole runs, all computed when called. Throws
+/// The effect of rounding on gridding functions, gridding, sums and whole runs, all computed when called. Throws
 /// Interrupted, and std::runtime_error when the MeasurementSet cannot be used.
 Report stability_report(const StabilityOptions& options, ProgressLine& progress);
 
-/// What rounding does to one gridding function, as E over |x| ≤ x0.
+/// The effect of rounding on one gridding function, as E over |x| ≤ x0.
 struct RoundingLoss {
   int width = 0;
   double x0 = 0;

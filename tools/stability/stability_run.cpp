@@ -61,7 +61,7 @@ PlanOrRefusal plan_or_refusal(imager::GriddingRequest request) {
   }
 }
 
-/// Whether one plan serves both requests: all other parts of cases' requests are equal.
+/// True if one plan serves both requests: all other parts of cases' requests are equal.
 bool alike(const imager::GriddingRequest& a, const imager::GriddingRequest& b) {
   const imager::ImageGeometry &g = a.geometry, &h = b.geometry;
   return a.accuracy == b.accuracy && a.samples == b.samples && a.max_abs_w == b.max_abs_w && a.gridder == b.gridder &&

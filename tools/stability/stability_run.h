@@ -44,9 +44,9 @@ struct StabilityOutcome {
   int max_iterations = 0;  ///< of CLEAN
   imager::CleanReport clean;
 
-  /// Whether image and prediction are as exact as asked, or the run says that they may not be.
+  /// True if image and prediction are as exact as asked, or the run says that they may not be.
   bool honest() const;
-  /// Whether RMS and worst pixel of the image lie within the strict bounds, which hold whatever the data.
+  /// True if RMS and worst pixel of the image lie within the strict bounds, which hold whatever the data.
   bool within_bounds() const { return measured.rms <= theory.bound_rms && measured.max <= theory.bound_max; }
   double peak_before_jy() const { return clean.cycles.front().peak_residual_jy; }
   double peak_after_jy() const { return clean.final_state().peak_residual_jy; }

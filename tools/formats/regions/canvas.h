@@ -22,7 +22,7 @@ struct Place {
   std::string text;   ///< as it is written, for errors
 };
 
-/// Whether longitudes of a frame are right ascensions, of which sexagesimal ones are in hours.
+/// True if longitudes of a frame are right ascensions, of which sexagesimal ones are in hours.
 bool has_right_ascensions(const std::string& frame);
 
 /// The pixels of an image, for regions to be drawn on.

@@ -10,7 +10,7 @@
 
 namespace misfit::tools::regions {
 
-/// Whether DS9 knows a word, in small letters, for a frame that is read.
+/// True if DS9 knows a word, in small letters, for a frame that is read.
 bool is_ds9_frame(const std::string& word);
 
 /// DS9's regions, as its reference manual's chapter "Regions" defines them:

@@ -58,7 +58,7 @@ bool yes_or_no(std::string_view name, std::string_view value) {
   return value == "1";
 }
 
-/// Whether `text` does not go on with a property: a name and an equals sign, or one of the two words.
+/// True if `text` does not go on with a property: a name and an equals sign, or one of the two words.
 bool goes_on(std::string_view text) {
   const std::string word = small_letters(take_word(text));
   return !text.starts_with('=') && word != "source" && word != "background";

@@ -13,7 +13,7 @@ std::vector<std::string_view> ds9_statements(std::string_view line);
 /// A statement's description of a region, and the properties behind its #.
 std::pair<std::string_view, std::string_view> split_ds9_properties(std::string_view statement);
 
-/// What properties say that matters to a mask; nothing where they do not.
+/// The properties that matter to a mask; nothing where they are not stated.
 struct Ds9Properties {
   std::optional<bool> included;
   std::optional<bool> background;  ///< or source

@@ -30,7 +30,7 @@ std::string listed(const std::array<std::string_view, count>& names) {
   return list;
 }
 
-/// Whether `text` begins with the next keyword and its equals sign.
+/// True if `text` begins with the next keyword and its equals sign.
 bool begins_keyword(std::string_view text) {
   return !take_word(text).empty() && text.starts_with('=');
 }

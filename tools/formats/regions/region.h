@@ -20,11 +20,11 @@ struct Region {
   int line = 0;              ///< of the file, counted from 1
 
   bool holds(int channel, std::size_t stokes_index) const { return channels.holds(channel) && stokes[stokes_index]; }
-  /// Whether it is of any plane of the image.
+  /// True if it is of any plane of the image.
   bool of_planes() const { return !channels.empty() && std::find(stokes.begin(), stokes.end(), true) != stokes.end(); }
 };
 
-/// What one line of a region file says.
+/// The content of one line of a region file.
 struct RegionLine {
   std::vector<Region> regions;
   std::vector<std::string> passed_over;  ///< shapes that have no area, by name

@@ -23,7 +23,7 @@ class RegionText {
   /// or none of a plane of the image.
   RegionText(const std::string& path, std::string_view text, const imager::ImageHeader& image);
 
-  /// Whether no region is of some planes alone.
+  /// True if no region is of some planes alone.
   bool one_for_all_channels() const;
   bool one_for_all_stokes() const;
   /// 1 in pixels of a plane that the regions allow, 0 elsewhere.
@@ -45,7 +45,7 @@ class RegionText {
   std::vector<std::string> doubts_;
 };
 
-/// Whether `text` begins as regions do and paths do not: with one of the formats' first lines, a shape and a bracket, or a
+/// True if `text` begins as regions do and paths do not: with one of the formats' first lines, a shape and a bracket, or a
 /// frame of DS9's, or `global`, and a semicolon.
 bool begins_regions(std::string_view text);
 
