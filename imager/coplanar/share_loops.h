@@ -20,8 +20,8 @@ struct SharePlaces {
   Real sign[capacity];     ///< −1 where w < 0
   Real on_grid[capacity];  ///< −1 where the grid has the conjugate of the sample
 
-  /// Of samples of a block, each row × channels + channel. The grid has those as they are that are said to be conjugated, and
-  /// the conjugates of all others.
+  /// Finds the shares of samples of a block, each numbered row × channels + channel. The grid holds the visibilities of samples
+  /// that `conjugate` marks, and the conjugates of all others.
   /// Throws std::invalid_argument where the tables do not reach a sample's
   /// w.
   SharePlaces(const SampleShares& shares, const SampleCoordinates& at, const std::size_t* sample, const bool* conjugate,

@@ -33,9 +33,9 @@ class SharedPrediction {
 class SharedTransform {
  public:
   virtual ~SharedTransform() = default;
-  /// Of so many sets of visibilities, most_stokes at most, and images; sets × images are most_shared_images at most.
+  /// Takes up to most_stokes sets of visibilities, and makes `images` of each; sets × images are most_shared_images at most.
   virtual std::unique_ptr<SharedAdjoint> adjoint(std::size_t sets, std::size_t images) const = 0;
-  /// Of images whose number is most_shared_images at most.
+  /// Predicts what up to most_shared_images images make together.
   virtual std::unique_ptr<SharedPrediction> predict(const std::vector<Image>& images) const = 0;
 };
 

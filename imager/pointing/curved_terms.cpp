@@ -67,7 +67,7 @@ Products products_of(const std::vector<double>& frequency_hz, const std::vector<
   return made;
 }
 
-/// What terms [direction][term] leave of products at most.
+/// The largest difference between products and what follows of them from terms [direction][term].
 double most_left(const MatrixXd& terms, const MatrixXd& share_of_value, const MatrixXd& values) {
   return (values - terms * (share_of_value.transpose() * values)).cwiseAbs().maxCoeff();
 }

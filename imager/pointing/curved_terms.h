@@ -40,7 +40,7 @@ class CurvedTerms {
   CurvedTerms(const std::vector<double>& frequency_hz, const BeamDirections& directions, double most_abs_w, double tolerance,
               std::size_t most_terms);
 
-  /// Whether so many terms are enough. Nothing else is known where they are not.
+  /// True if so many terms are enough; if not, there are no terms.
   bool enough() const { return enough_; }
   std::size_t terms() const { return of_nodes_.size(); }
   /// Nodes of one frequency follow one another.
@@ -56,7 +56,7 @@ class CurvedTerms {
 
   /// The shares at a frequency, which have no beam in them where the terms have none.
   const ShareTable& shares(double frequency_hz) const;
-  /// Of the shares at a frequency.
+  /// The memory that the shares at a frequency take.
   double table_bytes() const;
   /// Steps of the tables of shares that a wavelength of w takes.
   double steps_a_wavelength() const { return 1 / step_; }

@@ -92,8 +92,8 @@ MosaicBeams::MosaicBeams(MosaicScene scene) : scene_(std::move(scene)) {
   find_curved_terms();
 }
 
-/// In all of which what beams are at these frequencies tells what they are in any. An image of flat noise divides by what is
-/// seen: in parts of the largest that beams are in a direction they have to be right.
+/// Beams are taken relative to the largest that any is in a direction at these frequencies: an image of flat noise divides by
+/// what is seen, so that errors count in parts of that.
 BeamDirections MosaicBeams::directions(const std::vector<double>& frequency_hz) const {
   BeamDirections all;
   for (const auto& [pair, reach] : reach_) {

@@ -22,7 +22,7 @@ using MakeTermTransform = std::function<std::shared_ptr<const Transform>(const I
 
 /// One transform of what a window shows of all curved terms of its beam, see CurvedTerms.
 struct CurvedTransforms {
-  /// Of a window's pixels about the phase centre, so that windows of one size share it.
+  /// Makes the transform of a window's pixels moved to the phase centre, so that windows of one size share it.
   std::function<std::shared_ptr<const SharedTransform>(const ImageGeometry& window)> make;
   std::size_t terms = most_shared_images;    ///< that are gridded at most: those that come late count least
   std::size_t at_once = most_shared_images;  ///< that are gridded at a time
@@ -60,11 +60,11 @@ struct WindowSamples {
   std::size_t size() const { return rows.size() * channels.size(); }
 };
 
-/// The same samples over the plane that is tangent to the sky at their beam's axis, about the window's middle.
+/// Samples of a window, over the plane that is tangent to the sky at their beam's axis.
 struct CurvedSamples {
   const CurvedTerms* terms;
   VisibilityBlock at;                       ///< with u and v along the plane, w/n_0, and weights
-  std::vector<std::complex<double>> phase;  ///< of the middle, which is left to them. [row][channel]
+  std::vector<std::complex<double>> phase;  ///< of a source in the window's middle where q is 0. [row][channel]
 
   /// By how much these samples count in some of the terms. The samples must outlive them.
   SampleShares shares(std::size_t first, std::size_t count) const;
@@ -99,7 +99,7 @@ class MosaicWindows {
   std::vector<Image> beam_terms(const SeenWindow& seen, const BeamSpan& span) const {
     return beams_->terms(seen.beam, seen.window, span, options_.threads_of_each());
   }
-  /// Some of the curved ones.
+  /// Some of the curved terms of a window's beam.
   std::vector<Image> curved_images(const SeenWindow& seen, const BeamSpan& span, std::size_t first, std::size_t count) const {
     return beams_->curved_images(seen.beam, seen.window, span, first, count, options_.threads_of_each());
   }
