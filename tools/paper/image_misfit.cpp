@@ -90,11 +90,11 @@ double largest_deviation(const std::vector<Compared>& all) {
   return largest;
 }
 
-std::vector<DataTable::Cell> reduction_row(const std::vector<Compared>& least, const std::vector<Compared>& spheroidal) {
+Statement reduction(const std::vector<Compared>& least, const std::vector<Compared>& spheroidal) {
   std::map<int, double> ratio_by_width;
   for (std::size_t k = 0; k < least.size(); ++k)
     ratio_by_width[least[k].width] = spheroidal[k].measured.whole / least[k].measured.whole;
-  return hundredfold_row("RMS misfit of the image: spheroidal over least-misfit, same W, x₀ = 0.25", ratio_by_width);
+  return hundredfold("§4.1", "RMS misfit of the image: spheroidal over least-misfit, same W, x₀ = 0.25", ratio_by_width);
 }
 
 /// RMS of the direct image over the RMS for random phases.
@@ -133,10 +133,10 @@ PaperExperiment image_misfit_experiment(const CardScene& scene, SolvedKernels& s
                   misfit_figure("paper-misfit-spheroidal", "Image misfit of spheroidal functions", spheroidal)},
       .tables = {whole_images(least, spheroidal)}};
   result.statements = {
-      {"The misfit of an image follows from ℓ(x)", "√ℓ(x), its equations",
+      {"§2", "The misfit of an image follows from ℓ(x)", "√ℓ(x), its equations",
        "measured within " + significant(100 * deviation, 2) + " % of √(ℓ(x) + E) in every strip and for every W and function",
        verdict(deviation < sampling_error, "by more than a random sample of positions explains")},
-      reduction_row(least, spheroidal)};
+      reduction(least, spheroidal)};
   return result;
 }
 

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
 #include "kernels/kernel.h"
 #include "tools/base/progress.h"
 #include "tools/paper/card_scene.h"
+#include "tools/paper/statement.h"
 #include "tools/report/kernel_curves.h"
 #include "tools/report/report_folder.h"
 
@@ -16,10 +16,10 @@ namespace misfit::tools {
 /// against direct sums. A section for each, and last what they confirm. Throws Interrupted.
 std::vector<ReportSection> paper_experiments(SolvedKernels& solved, ProgressLine& progress);
 
-/// An experiment: what to show, and what it says of the paper's statements (statement, the paper, our numbers, verdict).
+/// An experiment: what to show, and what it says of the paper's statements.
 struct PaperExperiment {
   ReportSection section;
-  std::vector<std::vector<DataTable::Cell>> statements;
+  std::vector<Statement> statements;
 };
 
 /// Each in a file of its own. All images are of the scene's size.
@@ -35,13 +35,6 @@ struct ComparedKernels {
   kernels::Kernel spheroidal;  ///< α = 1, computed exactly
 };
 ComparedKernels compared_kernels(SolvedKernels& solved, int width, double x0);
-
-/// A row for the statement that the spheroidal function errs by more than 100 times what the least-misfit function does, given
-/// the ratio by width.
-std::vector<DataTable::Cell> hundredfold_row(const std::string& statement, const std::map<int, double>& ratio_by_width);
-
-/// "agrees" or "differs: " and why.
-std::string verdict(bool agrees, const std::string& why);
 
 /// The size of the FFT whose part 2·x0 is the scene's image, rounded to even.
 int fft_size_for(const CardScene& scene, double x0);

@@ -24,4 +24,9 @@ struct PlainGridder {
 imager::Image plain_image(const PlainGridder& gridder, const imager::VisibilityBlock& block,
                           const std::vector<std::complex<double>>& visibility);
 
+/// V = Σ I exp(2πi(ul+vm)) of the model's pixels in Jy, [row][channel], by FFT and degridding: the adjoint of plain_image
+/// without its weights, 0 where that leaves samples out.
+std::vector<std::complex<double>> plain_prediction(const PlainGridder& gridder, const imager::Image& model,
+                                                   const imager::VisibilityBlock& block);
+
 }  // namespace misfit::tools

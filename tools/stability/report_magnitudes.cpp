@@ -15,18 +15,19 @@
 namespace misfit::tools {
 namespace {
 
-constexpr int pixels = 48;
+constexpr int magnitude_pixels = 48;
 constexpr double pixel_rad = 1e-6;
 constexpr int wide_kernel = 12;
-constexpr int samples = 1000;
+constexpr int magnitude_samples = 1000;
 
 imager::ImageGeometry geometry() {
-  return {pixels, pixels, pixel_rad, {}};
+  return {magnitude_pixels, magnitude_pixels, pixel_rad, {}};
 }
 
 std::unique_ptr<imager::Transform> plane(imager::Precision precision) {
   const kernels::Kernel kernel = kernels::kernel_family("least-misfit").make(wide_kernel, 0.25);
-  return imager::make_coplanar_transform({geometry(), 2 * pixels, 2 * pixels, kernel, kernel, precision, 1});
+  return imager::make_coplanar_transform(
+      {geometry(), 2 * magnitude_pixels, 2 * magnitude_pixels, kernel, kernel, precision, 1});
 }
 
 /// Random visibilities, |u| and |v| up to `reach` times 1/(2 cell).
@@ -36,7 +37,7 @@ imager::VisibilityBlock random_block(double reach) {
   std::uniform_real_distribution<double> uniform(-reach, reach);
   imager::VisibilityBlock block;
   block.frequency_hz = {imager::speed_of_light_m_s};  // so that metres are wavelengths
-  for (int i = 0; i < samples; ++i) {
+  for (int i = 0; i < magnitude_samples; ++i) {
     for (int axis = 0; axis < 2; ++axis) block.uvw_m.edit().push_back(uniform(random) / (2 * pixel_rad));
     block.uvw_m.edit().push_back(0);
     block.visibility.emplace_back(normal(random), normal(random));
@@ -71,9 +72,9 @@ std::vector<double> image_of(const imager::Transform& transform, const imager::V
 double prediction_error(const imager::Transform& gridded, const imager::Transform& direct, double cells) {
   std::mt19937_64 random(2);
   std::normal_distribution<double> normal;
-  imager::Image model(pixels, pixels);
+  imager::Image model(magnitude_pixels, magnitude_pixels);
   for (double& pixel : model.pixel) pixel = normal(random);
-  const imager::VisibilityBlock block = random_block(cells / pixels);  // 2·pixels cells of the grid span 1/cell
+  const imager::VisibilityBlock block = random_block(cells / magnitude_pixels);  // 2·pixels cells of the grid span 1/cell
   return relative_error(gridded.predict(model)->at(block), direct.predict(model)->at(block));
 }
 
@@ -115,8 +116,8 @@ ReportSection magnitudes_section() {
   const auto single = plane(imager::Precision::single_precision);
   const imager::DirectTransform direct(geometry(), 1);
   return {.heading = "Denormal and huge values",
-          .paragraphs = {"Real gridding against the direct sum, W = 12, x₀ = 0.25, " + std::to_string(samples) +
-                         " random visibilities, an image of " + std::to_string(pixels) +
+          .paragraphs = {"Real gridding against the direct sum, W = 12, x₀ = 0.25, " + std::to_string(magnitude_samples) +
+                         " random visibilities, an image of " + std::to_string(magnitude_pixels) +
                          "² pixels. Gridding is linear, so that "
                          "only the range of the numbers counts: that of floats is 10⁻³⁸ to 10³⁸, and grids of floats lose what "
                          "lies outside."},

@@ -62,6 +62,27 @@ BOOST_DATA_TEST_CASE(it_makes_the_image_that_the_coplanar_transform_makes, bdata
   BOOST_TEST(relative_error(gridded(s, kernel), image_by(*plane, s)) < 1e-13);
 }
 
+BOOST_DATA_TEST_CASE(its_prediction_is_the_adjoint_of_its_image, bdata::make({1, 2, 3, 6, 7}), width) {
+  CardScene s = scene("vla-a");  // with samples that are left out
+  for (std::size_t i = 0; i < s.block.weight.size(); ++i) s.block.weight[i] = 1 + 0.01F * static_cast<float>(i % 7);
+  const kernels::Kernel kernel = kernels::kernel_family("least-misfit").make(width, 0.25);
+  const Eigen::VectorXd h = kernels::optimal_correction(kernel.polynomial, pixel_offsets(s.geometry.width, fft_size));
+  const PlainGridder gridder{s.geometry, fft_size, kernel.polynomial, h};
+  imager::Image model(s.geometry.width, s.geometry.height);
+  for (std::size_t i = 0; i < model.pixel.size(); ++i) model.pixel[i] = std::cos(1.7 * static_cast<double>(i * i % 1009));
+  const std::vector<std::complex<double>> predicted = plain_prediction(gridder, model, s.block);
+  const imager::Image image = plain_image(gridder, s.block, s.visibility);
+  double by_pixels = 0, by_samples = 0, size = 0;
+  for (std::size_t i = 0; i < model.pixel.size(); ++i) by_pixels += model.pixel[i] * image.pixel[i];
+  for (std::size_t i = 0; i < predicted.size(); ++i) {
+    const double term = double{s.block.weight[i]} * (std::conj(predicted[i]) * s.visibility[i]).real();
+    by_samples += term;
+    size += std::abs(term);
+  }
+  // Sums of a thousand terms in another order.
+  BOOST_TEST(std::abs(by_pixels - by_samples) < 1e-12 * size);
+}
+
 BOOST_AUTO_TEST_CASE(it_errs_by_no_more_than_its_kernel) {
   const CardScene s = scene("vla-c");
   const imager::DirectTransform direct({s.geometry, false, 1});
