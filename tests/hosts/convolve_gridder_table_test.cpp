@@ -132,11 +132,20 @@ BOOST_AUTO_TEST_CASE(what_is_no_kernel_for_it_is_refused_by_name) {
   const LeastMisfitFile unsampled(7, 0.25), wide(8, 0.25, kernels::TableSampling{});
   refused(unsampled.path, "CONVFUNC");
   refused(wide.path, "W = 8");
+  const LeastMisfitFile cubic(7, 0.25, kernels::TableSampling{128, 3});
+  refused(cubic.path, "the nearest entry");
   refused(wide.folder / "missing.fits", "does not exist");
   const std::string damaged = wide.folder / "damaged.fits";
   std::filesystem::copy_file(wide.path, damaged);
   std::fstream(damaged, std::ios::in | std::ios::out | std::ios::binary).seekp(-2000, std::ios::end).put('x');
   refused(damaged, "checksum");
+}
+
+BOOST_AUTO_TEST_CASE(only_grids_of_two_axes_are_taken) {
+  const LeastMisfitFile file(6, 0.25, kernels::TableSampling{64, 0});
+  const Vector<double> one(1, 1.0), two(2, 1.0);
+  BOOST_CHECK_THROW(ConvolveGridderTable(file.path, IPosition(1, 40), one, one), std::invalid_argument);
+  BOOST_CHECK_THROW(ConvolveGridderTable(file.path, IPosition(2, 40, 40), one, two), std::invalid_argument);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,7 +1,9 @@
 # Installs BUILD and moves what was installed, then builds programs of somebody else's with it, as CMake and pkg-config find it, and
-# runs them; and builds the example of a kernel from outside, which the installed program uses.
-# cmake -D BUILD=… -D CONSUMERS=… -D EXAMPLE=… -D COMPILER=… -D FLAGS=… -P install_test.cmake
+# runs them; and builds the example of a kernel from outside, which the installed program uses. The program that uses casacore is
+# the one that the guide prints.
+# cmake -D BUILD=… -D CONSUMERS=… -D GUIDE=… -D EXAMPLE=… -D COMPILER=… -D FLAGS=… -P install_test.cmake
 set(work "${BUILD}/tests/install test")  # a space in the path, on purpose
+set(consumers ${work}/consumers)
 set(modules ${work}/modules)
 
 function(run)
@@ -26,7 +28,7 @@ endfunction()
 
 # With the package asked for `components`, those programs are built and run.
 function(uses language components programs)
-  build(${CONSUMERS} ${language}-${components} -D LANGUAGE=${language} -D COMPONENTS=${components} -D PROGRAMS=${programs} ${ARGN})
+  build(${consumers} ${language}-${components} -D LANGUAGE=${language} -D COMPONENTS=${components} -D PROGRAMS=${programs} ${ARGN})
   separate_arguments(programs)
   foreach(program IN LISTS programs)
     run(${work}/${language}-${components}/${program})
@@ -35,7 +37,7 @@ endfunction()
 
 # The package refuses, and says `expected`.
 function(refuses language components expected)
-  configure(${CONSUMERS} refused-${components} -D LANGUAGE=${language} -D COMPONENTS=${components} -D PROGRAMS= ${ARGN})
+  configure(${consumers} refused-${components} -D LANGUAGE=${language} -D COMPONENTS=${components} -D PROGRAMS= ${ARGN})
   string(REGEX REPLACE "[ \n]+" " " errors "${errors}")
   string(FIND "${errors}" "${expected}" at)
   if(status EQUAL 0 OR at EQUAL -1)
@@ -63,6 +65,13 @@ file(REMOVE_RECURSE ${work})
 file(MAKE_DIRECTORY ${modules})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${work}/first)
 file(RENAME ${work}/first ${work}/prefix)
+file(COPY ${CONSUMERS}/ DESTINATION ${consumers})
+file(READ ${GUIDE}/other-imagers.md page)
+string(REGEX REPLACE "^.*\n```cpp\n" "" program "${page}")
+string(FIND "${program}" "```" end)
+string(SUBSTRING "${program}" 0 ${end} program)
+file(WRITE ${consumers}/hosts.cpp "${program}")
+run(${work}/prefix/bin/misfit kernel --emit casacore --width 7 --output k.fits)
 
 # Components look for what they are made of, and for no more.
 set(ENV{PKG_CONFIG_LIBDIR} ${modules})
@@ -86,10 +95,14 @@ cmake_path(GET found PARENT_PATH found)
 cmake_path(GET found PARENT_PATH libraries)
 set(ENV{PKG_CONFIG_PATH} ${found})
 foreach(component kernels imager ms_io hosts)
-  compile(misfit-${component} ${COMPILER} -std=c++17 ${CONSUMERS}/${component}.cpp -o ${component})
+  compile(misfit-${component} ${COMPILER} -std=c++17 ${consumers}/${component}.cpp -o ${component})
   run(${work}/${component})
 endforeach()
-compile(misfit-kernels_c cc -std=c99 -Wall -Wextra -Wpedantic -Werror ${CONSUMERS}/kernels_c.c -o kernels_c -lm)
+execute_process(COMMAND ${work}/hosts WORKING_DIRECTORY ${work} OUTPUT_VARIABLE errors)
+if(NOT errors MATCHES "own function +7\\..e-03.*our table +[78]\\..e-05.*in its place +[67]\\..e-05")
+  message(FATAL_ERROR "The guide's gridding.cpp prints ${errors}")
+endif()
+compile(misfit-kernels_c cc -std=c99 -Wall -Wextra -Wpedantic -Werror ${consumers}/kernels_c.c -o kernels_c -lm)
 run(env LD_LIBRARY_PATH=${libraries} ${work}/kernels_c)
 
 # Every installed header finds those that it includes, in C++17.

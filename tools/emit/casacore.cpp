@@ -71,6 +71,7 @@ Host casacore_host() {
     return hosts::casacore_taps(hosts::casacore_table(k.kernel.polynomial, k.per_cell), k.per_cell);
   };
   host.bytes = [](const HostKernel& k) { return (hosts::casacore_support + 1.0) * k.per_cell * sizeof(double); };
+  host.otherwise = "; CasacoreGridder takes wider functions, from a file made by --width and --padding without --emit";
   host.stock = stock_of_casacore;
   host.stock_name = "its spheroidal function, 100 entries a cell";
   host.write = write_casacore;

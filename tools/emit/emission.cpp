@@ -18,7 +18,8 @@ std::string range(int least, int most) {
 
 void check(const Host& host, const HostKernel& k) {
   expect(k.kernel.width() >= host.min_width && k.kernel.width() <= host.max_width, host,
-         "a width of " + std::to_string(k.kernel.width()), host.title + "'s " + range(host.min_width, host.max_width));
+         "a width of " + std::to_string(k.kernel.width()),
+         host.title + "'s " + range(host.min_width, host.max_width) + host.otherwise);
   expect(k.padding >= host.min_padding && k.padding <= host.max_padding, host, "a padding of " + significant(k.padding, 6),
          host.title + "'s " + significant(host.min_padding, 4) + " to " + significant(host.max_padding, 4));
   if (host.table.usual == 0) {
@@ -106,6 +107,8 @@ std::vector<std::string> statement(const Emission& e) {
     lines.push_back(line("left alone", "by " + errs(e.own->rms) + " with the correction that the host works out itself" +
                                            (host.depends_on_pixels ? ", " + std::to_string(k.image_size) + " pixels" : "")));
   if (e.stock) lines.push_back(line("without this", "by " + errs(e.stock->rms) + ", " + host.stock_name));
+  if (k.per_cell > 0 && e.stock && e.realised.rms > 0.5 * e.stock->rms)
+    lines.push_back(line("no gain", "with so few entries a cell; --sampling sets more"));
   return lines;
 }
 

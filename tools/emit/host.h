@@ -64,6 +64,7 @@ struct Host {
   std::function<kernels::Correction(const HostKernel&)> given_correction;
   /// Its rule with its own function, at this padding and image size; empty where that is not known.
   std::function<HostRule(const HostKernel&)> stock;
+  std::string otherwise;   ///< how to have more than the host can do, to end a refusal; may be empty
   std::string stock_name;  ///< its own function: "its spheroidal function, 100 entries a cell"
   /// Writes the file; it appears under its name only when complete.
   std::function<void(const Emission&, const std::string& path)> write;

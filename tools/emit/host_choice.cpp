@@ -60,7 +60,8 @@ HostKernel finest(const HostRequest& r, const kernels::Kernel& kernel) {
   throw std::invalid_argument("--target-error " + significant(r.target_error, 3) + ": " + r.host->title +
                               " cannot reach it at padding " + significant(r.padding, 5) + "; expected at least " +
                               significant(error, 3) + ", which width " + std::to_string(best.kernel.width()) +
-                              (best.per_cell > 0 ? " with " + std::to_string(best.per_cell) + " entries a cell" : "") + " has");
+                              (best.per_cell > 0 ? " with " + std::to_string(best.per_cell) + " entries a cell" : "") + " has" +
+                              r.host->otherwise);
 }
 
 /// The least number of entries, to two digits, that keeps the error within the target; 0 where the most do not.

@@ -18,12 +18,20 @@ ConvolveGridderTable::ConvolveGridderTable(const std::filesystem::path& kernel_t
                                            const casacore::Vector<Double>& origin_cell, std::optional<int> per_cell)
     : ConvolveGridder<Double, Complex>(grid_shape, cells_per_unit, origin_cell, "SF") {
   const kernels::KernelTable file = kernels::read_intact_kernel_table(kernel_table);
+  const auto refuse = [&](const std::string& why) { throw std::runtime_error("kernel table " + kernel_table.string() + why); };
   if (file.kernel.width() > casacore_cells)
-    throw std::runtime_error("kernel table " + kernel_table.string() + " has W = " + std::to_string(file.kernel.width()) +
-                             "; casacore's ConvolveGridder takes at most " + std::to_string(casacore_cells));
+    refuse(" has W = " + std::to_string(file.kernel.width()) + "; casacore's ConvolveGridder takes at most " +
+           std::to_string(casacore_cells) + ", and CasacoreGridder any");
   if (!per_cell && !file.sampling)
-    throw std::runtime_error("kernel table " + kernel_table.string() +
-                             " has no table CONVFUNC; expected one, or entries a cell");
+    refuse(" has no table CONVFUNC; expected a file by misfit kernel --emit casacore, or entries a cell");
+  if (!per_cell && file.sampling->interpolation != 0)
+    refuse(
+        " has a table to be interpolated, and casacore takes the nearest entry; expected a file by misfit kernel --emit "
+        "casacore, or entries a cell");
+  if (grid_shape.size() != 2 || cells_per_unit.size() != 2 || origin_cell.size() != 2)
+    throw std::invalid_argument("a grid of " + std::to_string(grid_shape.size()) + " axes with " +
+                                std::to_string(cells_per_unit.size()) + " scales and " + std::to_string(origin_cell.size()) +
+                                " offsets; expected 2 of each");
   cSampling() = per_cell ? *per_cell : file.sampling->per_cell;
   table_ = casacore_table(file.kernel.polynomial, cSampling());
   cFunction().resize(static_cast<std::size_t>(table_.size()));

@@ -15,9 +15,10 @@ namespace misfit::hosts {
 /// grids of two axes work, and degrid() does not know of setOffset().
 class ConvolveGridderTable : public casacore::ConvolveGridder<casacore::Double, casacore::Complex> {
  public:
-  /// The kernel of a file that `misfit kernel --output` has written, with the number of entries a cell that the file has
-  /// (`--sampling`) unless another is given. std::runtime_error that names the path when this is no such file, its checksum
-  /// does not match, it has no sampling and none is given, or W > 7.
+  /// The kernel of a file by `misfit kernel --emit casacore`, with the number of entries a cell that the file has, or any
+  /// kernel file with another number. The FFT has to be at least 1/(2 x0) times as large as the image: the gridder cannot know.
+  /// std::runtime_error that names the path when this is no such file, its checksum does not match, its table is not for the
+  /// nearest entry and no number is given, or W > 7; std::invalid_argument unless shape, scale and offset have two axes.
   ConvolveGridderTable(const std::filesystem::path& kernel_table, const casacore::IPosition& shape,
                        const casacore::Vector<casacore::Double>& scale, const casacore::Vector<casacore::Double>& offset,
                        std::optional<int> per_cell = {});
