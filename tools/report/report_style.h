@@ -18,9 +18,9 @@ header p, small, th, .none { color: var(--soft); }
 header p { margin: 0; }
 aside { background: var(--warn); border-left: 4px solid var(--warn-line); padding: .6rem 1rem; margin: 0 0 1.25rem; border-radius: 0 6px 6px 0; }
 aside p { margin: .25rem 0; }
-.facts { display: grid; grid-template-columns: repeat(auto-fit, minmax(16rem, 1fr)); gap: 1px; margin: 0; background: var(--line);
+.facts { display: flex; flex-wrap: wrap; gap: 1px; margin: 0; background: var(--line);
   border: 1px solid var(--line); border-radius: 8px; overflow: hidden; }
-.facts div { background: var(--page); padding: .8rem 1rem; }
+.facts div { flex: 1 1 16rem; background: var(--page); padding: .8rem 1rem; }
 .facts dt { font-size: .8rem; color: var(--soft); }
 .facts dd { margin: .1rem 0 0; font-size: 1.2rem; line-height: 1.35; font-variant-numeric: tabular-nums; }
 small { display: block; font-size: .8rem; }
@@ -57,7 +57,7 @@ td code { white-space: nowrap; }
 code, pre { font: .88rem/1.5 ui-monospace, "SF Mono", "DejaVu Sans Mono", monospace; }
 pre { background: var(--tint); padding: .8rem 1rem; border-radius: 6px; white-space: pre-wrap; overflow-wrap: anywhere; margin: 0; }
 td { overflow-wrap: break-word; } p, dd, figcaption { overflow-wrap: anywhere; }
-@media (max-width: 36rem) { main { padding: 1.25rem 1rem 3rem; } .facts { grid-template-columns: 1fr 1fr; } .facts dd { font-size: 1.05rem; }
+@media (max-width: 36rem) { main { padding: 1.25rem 1rem 3rem; } .facts div { flex-basis: 40%; } .facts dd { font-size: 1.05rem; }
   table { font-size: .85rem; } th, td { padding-right: .7rem; }
   .drawing { overflow-x: auto; } .drawing svg { min-width: 30rem; } }
 @media print { :root { color-scheme: light; font-size: 13px; } body { font-size: 1rem; } main { max-width: none; padding: 0; }

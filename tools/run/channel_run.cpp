@@ -8,6 +8,7 @@
 #include "imager/numerics/page_pool.h"
 #include "tools/base/interrupt.h"
 #include "tools/run/beam_choice.h"
+#include "tools/run/clean_doubts.h"
 #include "tools/run/image_files.h"
 #include "tools/run/run_messages.h"
 #include "tools/run/start_model.h"
@@ -235,12 +236,25 @@ std::unique_ptr<CleanStage> ChannelRun::clean() {
     iterations_.reset();
     cleaned().push_back(clean(s));
     progress().end();
-    const imager::CleanReport& report = cleaned().back().report;
-    this->report().stokes[s].clean = report;
-    if (report.stop == imager::CleanStop::diverging || report.stop == imager::CleanStop::diverging_from_best)
-      warn(divergence_warning(report) + of);
+    report().stokes[s].clean = cleaned().back().report;
+    doubt_clean(s);
   }
   return std::move(stage_);
+}
+
+void ChannelRun::doubt_clean(std::size_t stokes) {
+  const CleanedImage image{.components = cleaned().back().components.components().size(),
+                           .visibilities = images_.images.sums[stokes].used,
+                           .limited = stage_->mask(stokes) != nullptr,
+                           .one_of_many = scene_.told == nullptr};
+  const bool several = scene_.header.stokes.size() > 1;
+  for (const std::string& sentence : clean_doubts(cleaned().back().report, options().clean, image)) {
+    const std::string doubt = (several ? stokes_name(scene_.header.stokes[stokes]) + ": " : "") + sentence;
+    if (scene_.told != nullptr)
+      scene_.told->warn(doubt);
+    else
+      made_.doubts.push_back(doubt);
+  }
 }
 
 void ChannelRun::follow_clean() {

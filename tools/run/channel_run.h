@@ -132,6 +132,8 @@ class ChannelRun {
   void count_cycle(const imager::CleanState& state);
   imager::ImagedData imaged(std::size_t stokes);
   imager::CleanResult clean(std::size_t stokes);
+  /// Warns of what is doubtful about the last CLEAN, or keeps that for planes to be told together.
+  void doubt_clean(std::size_t stokes);
 
   const ChannelScene& scene_;
   std::unique_ptr<ChannelSamples> samples_;

@@ -134,13 +134,26 @@ json clean_json(const std::optional<imager::CleanReport>& clean) {
   return report;
 }
 
-json stokes_json(double asked, const ChannelReport& plane) {
+/// The brightest pixel of the restored image; null without one.
+json restored_json(const StokesReport& of, const imager::ImageGeometry& geometry) {
+  if (!of.clean) return nullptr;
+  constexpr double degree = std::numbers::pi / 180;
+  const std::optional<imager::SkyDirection> at = peak_direction(of.brightest, geometry);
+  return {{"peak_jy", number(of.brightest.value)},
+          {"ra_deg", at ? json(at->ra_rad / degree) : json()},
+          {"dec_deg", at ? json(at->dec_rad / degree) : json()},
+          {"column", of.brightest.column},
+          {"row", of.brightest.row}};
+}
+
+json stokes_json(const RunReport& r, const ChannelReport& plane) {
   json list = json::array();
   for (const StokesReport& of : plane.stokes)
     list.push_back({{"stokes", imager::stokes_name(of.stokes)},
-                    {"error", error_json(asked, plane, of)},
+                    {"error", error_json(r.accuracy, plane, of)},
                     {"noise", noise_json(plane, of)},
                     {"clean", clean_json(of.clean)},
+                    {"restored", restored_json(of, r.geometry)},
                     {"residual_histogram", histogram_json(of.histogram)}});
   return list;
 }
@@ -168,7 +181,7 @@ json planes_json(const RunReport& r) {
                     {"noise", noise_json(plane, first)},
                     {"brightest_jy", empty ? json() : number(first.brightest.value)},
                     {"clean", clean_json(first.clean)},
-                    {"stokes", stokes_json(r.accuracy, plane)}});
+                    {"stokes", stokes_json(r, plane)}});
   }
   return list;
 }
@@ -212,6 +225,12 @@ std::size_t brightest_channel(const std::vector<ChannelReport>& channels) {
   return static_cast<std::size_t>(found - channels.begin());
 }
 
+std::optional<imager::SkyDirection> peak_direction(const imager::Peak& peak, const imager::ImageGeometry& geometry) {
+  const imager::DirectionCosines at = geometry.at(peak.row, peak.column);
+  if (imager::beyond_horizon(at)) return std::nullopt;
+  return imager::sky_direction(at, geometry.phase_centre);
+}
+
 double largest_expected_error(const RunReport& r) {
   double largest = 0;
   for (const ChannelReport& plane : r.channels)
@@ -242,8 +261,9 @@ json report_json(const RunReport& r) {
                      {"beam", restoring_json(plane.beams)},
                      {"beam_by_quadrant", plane.beams ? beam_json(plane.beams->quadrant) : json()},
                      {"clean", clean_json(first.clean)},
+                     {"restored", restored_json(first, r.geometry)},
                      {"residual_histogram", histogram_json(first.histogram)},
-                     {"stokes", stokes_json(r.accuracy, plane)},
+                     {"stokes", stokes_json(r, plane)},
                      {"spectral_axis", spectral_json(r.cube)},
                      {"planes", r.cube ? planes_json(r) : json()},
                      {"plane_samples", r.cube ? json(r.channel_samples) : json()},

@@ -25,7 +25,7 @@ struct StokesReport {
   std::optional<imager::TheoreticalError> theory{};
   std::optional<imager::PixelError> measured{};  ///< over the image's RMS
   std::optional<imager::CleanReport> clean{};
-  imager::Peak brightest{};    ///< of the restored image, or of the dirty one
+  imager::Peak brightest{};    ///< of the restored image, which there is where CLEAN ran; else of the dirty one of a cube
   PixelHistogram histogram{};  ///< of the residual, or of the dirty image where nothing was cleaned
 };
 
@@ -48,7 +48,8 @@ struct RunReport {
   nlohmann::json options;
   imager::Plan plan;
   std::vector<std::string> warnings;
-  double accuracy = 0;  ///< 0 = none was asked
+  imager::ImageGeometry geometry{};  ///< of the images
+  double accuracy = 0;               ///< 0 = none was asked
   const imager::GriddingPlan* gridding = nullptr;
   std::vector<ChannelReport> channels = {{}};  ///< at least one
   std::size_t shown = 0;                       ///< the channel that is drawn, and the one reported where only one is
@@ -66,14 +67,19 @@ struct RunReport {
 /// The index of the channel with the brightest pixel of the first Stokes parameter; 0 where none has samples.
 std::size_t brightest_channel(const std::vector<ChannelReport>& channels);
 
+/// Where on the sky a pixel of this kind lies; nothing beyond the horizon.
+std::optional<imager::SkyDirection> peak_direction(const imager::Peak& peak, const imager::ImageGeometry& geometry);
+
 /// The largest of all channels and Stokes parameters, over each image's RMS.
 double largest_expected_error(const RunReport& report);
 
 /// report.json, with the keys of the project's design; `noise` {predicted_jy, measured_jy}, `beam.how`, `beam.misfit`,
 /// `beam_by_quadrant`, `memory_gib_estimated`, `warnings`, `command_line`, `outside`, `outside_search`, `timings_s.total`,
 /// `timings_expected_s` (by stage, with `total`; null where nothing was expected), `clean.major_cycles_log`, `clean.kept_cycle`
-/// (whose model was kept), `residual_histogram` (see histogram_json()) and `stokes` (a list of {stokes, error, noise, clean,
-/// residual_histogram}, of which the first is what the report's own keys hold) are additions. For a cube, these keys tell of
+/// (whose model was kept), `residual_histogram` (see histogram_json()), `restored` {peak_jy, ra_deg, dec_deg, column, row} (the
+/// brightest pixel of the restored image, before the primary beam is divided out; null without one) and `stokes` (a list of
+/// {stokes, error, noise, clean, restored, residual_histogram}, of which the first is what the report's own keys hold) are
+/// additions. For a cube, these keys tell of
 /// the plane that is drawn, `spectral_axis` of its planes' frequencies, `planes` (a list of {plane, frequency_hz, used, beam,
 /// noise, brightest_jy, clean, stokes}) of each, `plane_samples` and `samples_outside_planes` of usable samples in them and in
 /// none; they are null otherwise. Where several planes are made at a time, `timings_s` counts the seconds that they spent on a

@@ -50,7 +50,8 @@ std::string beam_text(const json& report) {
   const std::string how =
       misfit.is_number() ? plain(member(beam, "how")) + "; the main lobe differs by " + significant(misfit.get<double>(), 2)
                          : "";
-  return size + (how.empty() ? "" : tag("small", how)) + beam_size(member(report, "beam_by_quadrant"), "WSClean’s rule gives");
+  return size + (how.empty() ? "" : tag("small", how)) +
+         beam_size(member(report, "beam_by_quadrant"), "to compare: WSClean’s fit, to a quadrant of the PSF, gives");
 }
 
 std::string image_text(const json& options) {
@@ -67,7 +68,18 @@ std::string image_text(const json& options) {
   return text.empty() ? not_measured : text + " pixels" + (cell.is_null() ? "" : tag("small", "of " + plain(cell)));
 }
 
-/// The error against the direct transform: measured, or else expected, and whether it keeps the accuracy asked.
+/// The peak of the restored image in Jy/beam, and in small where it is.
+std::string restored_text(const json& restored) {
+  constexpr double degree = M_PI / 180;
+  const json& ra = member(restored, "ra_deg");
+  const json& dec = member(restored, "dec_deg");
+  const bool on_sky = ra.is_number() && dec.is_number();
+  return with_unit(member(restored, "peak_jy"), "Jy/beam") +
+         tag("small", "peak" + (on_sky ? ", at " + sexagesimal({ra.get<double>() * degree, dec.get<double>() * degree}) : "")) +
+         tag("small", "pixel " + whole(member(restored, "column")) + ", " + whole(member(restored, "row")) + ", from 0");
+}
+
+/// The error against the direct transform: measured, or else expected, whether it keeps the accuracy asked, and what it is not.
 std::string accuracy_text(const json& error) {
   const json& requested = member(error, "requested");
   const bool measured = member(error, "measured_rms").is_number();
@@ -79,7 +91,8 @@ std::string accuracy_text(const json& error) {
     text += tag("small", (kept ? "✓ within " : "✗ exceeds ") + html_power(requested.get<double>()) + " asked for",
                 kept ? "good" : "bad");
   }
-  return text;
+  return text +
+         tag("small", "of gridding and FFT against direct sums of these data; it says nothing of CLEAN, calibration or noise");
 }
 
 std::string headline(const json& report) {
@@ -91,6 +104,8 @@ std::string headline(const json& report) {
   facts.emplace_back("Visibilities used", whole(member(visibilities, "used")) +
                                               tag("small", "of " + whole(member(visibilities, "samples_read")) + " read"));
   if (clean.is_object()) {
+    if (const json& restored = member(report, "restored"); restored.is_object())
+      facts.emplace_back("Restored", restored_text(restored));
     facts.emplace_back("Residual", with_unit(member(clean, "rms_jy"), "Jy/beam") +
                                        tag("small", "noise; peak " + with_unit(member(clean, "peak_residual_jy"), "Jy/beam")));
   } else if (const json& histogram = member(report, "residual_histogram"); histogram.is_object()) {

@@ -1,6 +1,7 @@
 #include "tools/run/run_report.h"
 
 #include <boost/test/unit_test.hpp>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -11,7 +12,7 @@ using nlohmann::json;
 
 BOOST_AUTO_TEST_CASE(what_does_not_exist_is_null) {
   const json report = tools::report_json({});
-  for (const char* part : {"kernel", "beam", "clean"}) {
+  for (const char* part : {"kernel", "beam", "clean", "restored"}) {
     BOOST_TEST_INFO(part);
     BOOST_TEST(report.at(part).is_null());
   }
@@ -78,6 +79,28 @@ BOOST_AUTO_TEST_CASE(clean_states_the_cycle_that_was_kept) {
   BOOST_TEST(report.at("kept_cycle") == 1);
   BOOST_TEST(report.at("major_cycles_log").size() == 3U);
   BOOST_TEST(report.at("major_cycles_log")[1].at("ended") == "deep enough");
+}
+
+BOOST_AUTO_TEST_CASE(the_peak_of_the_restored_image_has_a_place_on_the_sky) {
+  constexpr double degree = std::numbers::pi / 180;
+  tools::RunReport run;
+  run.geometry = {64, 32, degree, {30 * degree, 0}};
+  imager::CleanReport clean;
+  clean.cycles.resize(1);
+  tools::StokesReport& of = run.channels.front().stokes.front();
+  of.brightest = {.row = 16, .column = 2, .value = -0.5};  // 30 pixels east of the middle, on the equator
+  BOOST_TEST(tools::report_json(run).at("restored").is_null());
+  of.clean = clean;
+  const json restored = tools::report_json(run).at("restored");
+  BOOST_TEST(restored.at("peak_jy") == -0.5);
+  BOOST_TEST(restored.at("column") == 2);
+  BOOST_TEST(restored.at("row") == 16);
+  BOOST_TEST(std::abs(restored.at("ra_deg").get<double>() - 30 - std::asin(30 * degree) / degree) < 1e-12);
+  BOOST_TEST(std::abs(restored.at("dec_deg").get<double>()) < 1e-12);
+  of.brightest.column = 63;
+  of.brightest.row = 0;
+  run.geometry.cell_rad = 1;
+  BOOST_TEST(tools::report_json(run).at("restored").at("ra_deg").is_null());  // beyond the horizon
 }
 
 BOOST_AUTO_TEST_CASE(timings_are_the_stages_and_the_total) {

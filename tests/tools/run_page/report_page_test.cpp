@@ -27,6 +27,7 @@ json full_report() {
     "timings_s": {"read": 0.5, "grid": 1.0, "total": 2.0}, "memory_gib_peak": 0.2,
     "residual_histogram": {"noise_jy": 0.002, "min_jy": -0.008, "max_jy": 0.025, "pixels": 1000000, "beyond_5_sigma": 3},
     "beam": {"major_arcsec": 0.4, "minor_arcsec": 0.3, "pa_deg": -12.5},
+    "beam_by_quadrant": {"major_arcsec": 0.45, "minor_arcsec": 0.35, "pa_deg": -10},
     "clean": {"iterations": 100, "major_cycles": 2, "stop_code": 1, "stop_reason": "iteration limit", "peak_residual_jy": 0.01,
               "rms_jy": 0.001, "model_flux_jy": 2.5,
               "major_cycles_log": [
@@ -104,6 +105,21 @@ BOOST_AUTO_TEST_CASE(an_error_beyond_what_was_asked_stands_out) {
   BOOST_TEST(contains(misfit::tools::report_page(report, {}), "✗ exceeds 10<sup>−6</sup> asked for"));
   report["error"]["measured_rms"] = nullptr;
   BOOST_TEST(contains(misfit::tools::report_page(report, {}), "✓ within 10<sup>−6</sup> asked for"));
+}
+
+BOOST_AUTO_TEST_CASE(the_error_of_the_transform_is_told_from_that_of_the_image) {
+  BOOST_TEST(contains(misfit::tools::report_page(full_report(), {}), "it says nothing of CLEAN, calibration or noise"));
+}
+
+BOOST_AUTO_TEST_CASE(the_peak_of_the_restored_image_is_told_with_its_place) {
+  json report = full_report();
+  BOOST_TEST(!contains(misfit::tools::report_page(report, {}), "Restored"));
+  report["restored"] = {{"peak_jy", 0.25}, {"ra_deg", 187.5}, {"dec_deg", -12.5}, {"column", 500}, {"row", 300}};
+  const std::string page = misfit::tools::report_page(report, {});
+  for (const char* text : {"250 mJy/beam", "peak, at 12h 30m 00.000s", "−12° 30′ 00.00″", "pixel 500, 300"})
+    BOOST_TEST(contains(page, text), text);
+  report["restored"]["ra_deg"] = nullptr;  // beyond the horizon
+  BOOST_TEST(contains(misfit::tools::report_page(report, {}), "<small>peak</small>"));
 }
 
 BOOST_AUTO_TEST_CASE(a_histogram_is_shown_with_its_numbers) {
