@@ -188,9 +188,11 @@ void require_exact_storage(const casacore::MeasurementSet& set, const std::strin
 }  // namespace
 
 void throw_exists(const std::string& path, const std::string& column) {
-  throw std::runtime_error(path + " has a column " + column +
-                           " already, which may hold calibrated data; expected another --column, or this one by name, and "
-                           "--datacolumn for the data that a model is subtracted from");
+  const bool corrected = column == "CORRECTED_DATA";
+  const std::string other = column == "RESIDUAL_DATA" ? "RESIDUAL_DATA_2" : "RESIDUAL_DATA";
+  throw std::runtime_error(path + " has a column " + column + " already; expected --column " + other +
+                           ", which leaves it as it is, or --column " + column + " --datacolumn " +
+                           (corrected ? "corrected" : column) + ", which subtracts from it in place");
 }
 
 void require_writable_column(const casacore::MeasurementSet& set, const std::string& path, const ModelColumn& column) {

@@ -76,7 +76,7 @@ void replace_file(const std::string& path, const std::string& contents, const st
   std::error_code error;
   if (file) std::filesystem::rename(beside, path, error);
   if (!file) error = {errno, std::generic_category()};
-  if (error) throw std::runtime_error("cannot write " + path + ", which tells " + meaning + ": " + error.message());
+  if (error) throw std::runtime_error("cannot write " + path + ", which is to hold " + meaning + ": " + error.message());
 }
 
 void remove_file(const std::string& path) {
@@ -94,7 +94,7 @@ std::optional<ModelJournal> read_journal(const casacore::Table& set, const std::
 
 void write_journal(const casacore::Table& set, const ModelJournal& journal) {
   for (const std::string& path : files_beside(set, journal_kind, journal.column))
-    replace_file(path, text_of(journal), "how far the column is");
+    replace_file(path, text_of(journal), "how many rows of the column are written");
 }
 
 void remove_journal(const casacore::Table& set, const std::string& column) {

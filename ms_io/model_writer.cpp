@@ -25,14 +25,6 @@
 namespace misfit::ms_io {
 namespace {
 
-/// `column` with its names spelt out.
-ModelColumn spelt_out(const ModelColumn& column) {
-  ModelColumn result = column;
-  result.name = column_name(column.name);
-  result.subtracted_from = column_name(column.subtracted_from);
-  return result;
-}
-
 std::string hexadecimal(std::uint64_t number) {
   std::ostringstream text;
   text.imbue(std::locale::classic());
@@ -209,6 +201,7 @@ class ModelWriter {
     });
     remove_journal(set_, column_.name);
     if (report.rows_before == 0) report.zeros = {path_, column_.subtracted_from, filled_->zeros(imager::alone())};
+    report.set_rows = set_.nrow();
     report.rows = journal_.written;
     report.samples = samples_;
     report.nonfinite_uvw_rows = journal_.nonfinite_uvw_rows;
@@ -233,7 +226,7 @@ class ModelWriter {
     if (column_.in_place() && left != Left::beginning && !outlived(set_, *before))
       throw std::runtime_error(
           incompleteness(path_, *before) +
-          "; expected the same command, which goes on there, before a model is subtracted from these data");
+          "; expected that command again, which writes the other rows, before another model is subtracted from these data");
     if (!column_.may_exist && (left == Left::another || left == Left::changed)) throw_exists(path_, column_.name);
     if (left == Left::beginning) journal_ = *before;
     const std::string fate = left == Left::beginning ? ", going on"
@@ -371,6 +364,26 @@ class ModelWriter {
 
 bool ModelColumn::in_place() const {
   return column_name(name) == column_name(subtracted_from);
+}
+
+ModelColumn spelt_out(const ModelColumn& column) {
+  ModelColumn result = column;
+  result.name = column_name(column.name);
+  result.subtracted_from = column_name(column.subtracted_from);
+  return result;
+}
+
+UnselectedCells unselected_cells(const std::string& path, const Selection& selection, const ModelColumn& column) {
+  UnselectedCells cells;
+  if (to_text(selection).empty()) return cells;
+  const casacore::MeasurementSet set = open_measurement_set(path, Access::read);
+  const SelectedRows selected = select_rows(set, path, selection, {MeasurementSet::usual_block_samples, false});
+  cells.set_rows = set.nrow();
+  cells.rows = cells.set_rows - selected.rows;
+  cells.channels = std::any_of(selected.setups.begin(), selected.setups.end(),
+                               [](const Setup& setup) { return setup.frequency_hz.size() < setup.stored_channels; });
+  cells.column_is_new = !set.tableDesc().isColumn(column_name(column.name));
+  return cells;
 }
 
 std::string incomplete_column(const std::string& path, const std::string& column) {

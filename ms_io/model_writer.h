@@ -54,13 +54,29 @@ struct ModelColumn {
   bool in_place() const;
 };
 
+/// `column` with its short names spelt out.
+ModelColumn spelt_out(const ModelColumn& column);
+
 struct ModelWriteReport {
+  std::uint64_t set_rows = 0;            ///< of the set, selected or not
   std::uint64_t rows = 0;                ///< that hold the model now
   std::uint64_t rows_before = 0;         ///< of these, written by an earlier run that this one continued
   std::uint64_t samples = 0;             ///< Stokes samples: rows × channels
   std::uint64_t nonfinite_uvw_rows = 0;  ///< rows for which the model counts as 0
   ZeroColumn zeros = {};                 ///< of the data that the model was subtracted from, where this run subtracted from all
 };
+
+/// Cells that a selection leaves out of a column.
+struct UnselectedCells {
+  std::uint64_t set_rows = 0;  ///< of the set, selected or not
+  std::uint64_t rows = 0;      ///< that are not selected
+  bool channels = false;       ///< true if some rows that are selected have channels that are not
+  bool column_is_new = false;  ///< true if the set has no such column yet
+};
+
+/// The cells of `column` that `selection`, of one set, leaves out; {} without reading the set where it selects all. Throws what
+/// write_model would for a wrong or empty selection.
+UnselectedCells unselected_cells(const std::string& path, const Selection& selection, const ModelColumn& column = {});
 
 /// "MODEL_DATA of `path` is incomplete: 12 of 30 rows were written before by …", or nothing where no run was cut short while it
 /// wrote that column, or another program has written all of it since, as up to 16 cells spread over the selection show. Throws

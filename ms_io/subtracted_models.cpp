@@ -63,12 +63,12 @@ void write_subtracted_models(const casacore::MeasurementSet& set, const std::str
   for (const Witness& cell : witnesses) text << "cell " << cell.row << ' ' << cell.channel << ' ' << cell.after << '\n';
   text << "end\n";
   for (const std::string& path : files_beside(set, kind_of_file, column))
-    replace_file(path, text.str(), "what the column's data lack");
+    replace_file(path, text.str(), "the models that the column's data lack");
 }
 
 std::string lacks_already(const std::string& path, const std::string& column, const SubtractedModel& model) {
-  return column + " of " + path +
-         " lacks a model already: " + (model.command.empty() ? "a run that left no name subtracted it" : model.command);
+  return "the model of " + (model.command.empty() ? "a run that left no name" : model.command) +
+         " has already been subtracted from " + column + " of " + path;
 }
 
 }  // namespace misfit::ms_io

@@ -27,7 +27,7 @@ std::vector<SubtractedModel> subtracted_models(const casacore::MeasurementSet& s
 void write_subtracted_models(const casacore::MeasurementSet& set, const std::string& column,
                              const std::vector<SubtractedModel>& models, const std::vector<Witness>& witnesses);
 
-/// "CORRECTED_DATA of `path` lacks a model already: misfit predict --subtract --model a.fits".
+/// "the model of misfit predict --subtract --model a.fits has already been subtracted from CORRECTED_DATA of `path`".
 std::string lacks_already(const std::string& path, const std::string& column, const SubtractedModel& model);
 
 }  // namespace misfit::ms_io

@@ -30,6 +30,7 @@
 #include "tools/run/seen_model.h"
 #include "tools/run/selection_options.h"
 #include "tools/run/shared_prediction.h"
+#include "tools/run/written_column.h"
 
 namespace misfit::tools {
 namespace {
@@ -213,21 +214,25 @@ void check_values(const PredictOptions& o) {
   if (o.threads < 0) throw std::invalid_argument("--threads " + std::to_string(o.threads) + ": expected 0 (all cores) or more");
 }
 
+/// A warning that data are subtracted from, by default, other than those which misfit image takes by default; else empty.
+std::string uncalibrated_warning(const PredictOptions& o) {
+  const std::string calibrated = "CORRECTED_DATA";
+  if (!o.subtract || !o.datacolumn.empty() || ms_io::spelt_out(column_of(o)).name == calibrated) return "";
+  if (ms_io::named_columns({o.vis}, "auto") != calibrated) return "";
+  return o.vis +
+         " has CORRECTED_DATA, which misfit image takes, but the model is subtracted from DATA; --datacolumn corrected "
+         "takes CORRECTED_DATA";
+}
+
 Outcome outcome_of(const PredictOptions& o, const ms_io::ModelWriteReport& report) {
-  const auto count = [](std::uint64_t number) { return grouped(static_cast<long long>(number)); };
-  std::string words = o.vis + ": " + (o.subtract ? "data − model of " : "") + count(report.samples) + " visibilities in " +
-                      count(report.rows) + " rows written to " + column_of(o).name + "\n";
-  if (report.rows_before > 0) words += count(report.rows_before) + " of these rows had been written before\n";
-  if (report.nonfinite_uvw_rows > 0)
-    words += count(report.nonfinite_uvw_rows) + " rows have UVW that are not finite and " +
-             (o.subtract ? "keep their data\n" : "got 0\n");
+  const ms_io::ModelColumn column = ms_io::spelt_out(column_of(o));
   return {true,
-          {{"column", column_of(o).name},
+          {{"column", column.name},
            {"visibilities", report.samples},
            {"rows", report.rows},
            {"rows_written_before", report.rows_before},
            {"rows_of_nonfinite_uvw", report.nonfinite_uvw_rows}},
-          words};
+          written_words(o.vis, column, report)};
 }
 
 /// The command, for people who find its column incomplete.
@@ -253,7 +258,11 @@ NamedModel read_model(const PredictOptions& o, const imager::Ranks& ranks) {
 void predict(const PredictOptions& o, const CommandCall& call) {
   const imager::Ranks& ranks = call.ranks;
   check_values(o);
-  if (o.model.empty() == o.components.empty()) throw std::invalid_argument("expected either --model or --components");
+  if (o.model.empty() && o.components.empty())
+    throw std::invalid_argument("no model is given: expected either --model or --components");
+  if (!o.model.empty() && !o.components.empty())
+    throw std::invalid_argument("--model " + o.model + " beside --components " + o.components +
+                                ": expected either --model or --components");
   if (o.model.empty() && o.kernel_is_typed)
     refuse_option("kernel", o.kernel.name, "no gridding function beside --components, which are summed directly");
   ms_io::ModelColumn column = column_of(o);
@@ -263,11 +272,14 @@ void predict(const PredictOptions& o, const CommandCall& call) {
     if (const std::string sentence = ms_io::incomplete_column(o.vis, column.subtracted_from); !sentence.empty())
       progress.say("warning: " + sentence);
   }
+  if (const std::string sentence = uncalibrated_warning(o); !sentence.empty()) progress.say("warning: " + sentence);
   NamedModel model = read_model(o, ranks);
   for (const std::string& sentence : model.remarks) progress.say("warning: " + sentence);
   ranks.meet();  // before the set changes
   SharedPrediction shared(ranks, model.visibilities.predict);
   if (!ranks.first()) return shared.follow();
+  if (const std::string sentence = unselected_warning(o.vis, model.selection, column); !sentence.empty())
+    progress.say("warning: " + sentence);
   if (model.empty)
     progress.say("warning: " + (o.model.empty() ? o.components + " lists no source: " : o.model + " is 0 in every pixel: ") +
                  (o.subtract ? "the data are written as they are" : "all visibilities written are 0"));
@@ -290,52 +302,54 @@ void add_predict_command(CLI::App& program, const CommandCall& call) {
   CLI::App* command =
       program.add_subcommand("predict", "Write a model's visibilities, or data without them, into a MeasurementSet");
   const auto o = std::make_shared<PredictOptions>();
-  command->add_option("--vis", o->vis, "MeasurementSet; only the column is written")->required()->type_name(folder_type);
+  command->add_option("--vis", o->vis, "MeasurementSet, of which only the column --column is written")
+      ->required()
+      ->type_name(folder_type);
   command
       ->add_option(
           "--model", o->model,
-          "FITS or CASA image in Jy/pixel, predicted where its header has it on the sky; its STOKES axis may hold I, Q, U and "
-          "V. Of one Taylor term: names with .tt0, .tt1, …, and headers with NTERMS above 1, are refused")
+          "FITS or CASA image in Jy/pixel, at the place on the sky that its header states; its STOKES axis may hold I, Q, U "
+          "and V. An image of one Taylor term is refused: a name with .tt0, .tt1, …, or a header with NTERMS above 1")
       ->type_name(file_type);
   command
-      ->add_option(
-          "--components", o->components,
-          "CSV file with ra_deg,dec_deg,flux_jy or l_arcsec,m_arcsec,flux_jy, and scale_arcsec for the full width at "
-          "half maximum of a circular Gaussian (0: a point), summed directly with w; polarised ones have flux_q_jy, flux_u_jy, "
-          "flux_v_jy too")
+      ->add_option("--components", o->components,
+                   "CSV file of sources, which are summed directly with w: ra_deg,dec_deg,flux_jy or "
+                   "l_arcsec,m_arcsec,flux_jy; scale_arcsec is the full width at half maximum of a circular Gaussian (0: a "
+                   "point); polarised sources also have flux_q_jy, flux_u_jy, flux_v_jy")
       ->type_name(file_type);
   CLI::Option* apply_beam =
       command->add_flag("--apply-beam", o->apply_beam,
-                        "The model is the sky without a primary beam, as .image.pbcor has it: each row sees it through its "
-                        "dishes' beams where its "
-                        "field points, at the frequency of each channel; Gaussians of --components as at their middle");
-  command->add_option("--beam", o->beam, "The primary beam of --apply-beam in place of the antennas' own, as of `misfit image`")
+                        "Multiply the model by the primary beam: the model is the sky as in .image.pbcor, and each row sees it "
+                        "through its dishes' beams about its field's pointing, at each channel's frequency. Gaussians of "
+                        "--components are multiplied by the beam at their middle");
+  command
+      ->add_option("--beam", o->beam,
+                   "Primary beam that --apply-beam uses instead of the antennas' own; values as for --beam of misfit image")
       ->type_name(name_or_file_type)
       ->needs(apply_beam);
-  CLI::Option* subtract =
-      command->add_flag("--subtract", o->subtract,
-                        "Write data − model instead: each correlation loses what the model is to it, XX = I + Q and so on");
+  CLI::Option* subtract = command->add_flag(
+      "--subtract", o->subtract,
+      "Write data − model instead of the model; each correlation loses the model's value for it, such as I + Q for XX");
   command
       ->add_option("--datacolumn", o->datacolumn,
-                   "What is subtracted from: data (the default), corrected, model, or a column's name")
+                   "Column from which --subtract subtracts: data (the default), corrected, model, or a column's name")
       ->needs(subtract)
       ->check(values_are({"data", "corrected", "model"}, Others::possible));
-  command->add_option(
-      "--column", o->column,
-      "Column to write: MODEL_DATA, or CORRECTED_DATA with --subtract, where that must not exist yet unless it and "
-      "--datacolumn "
-      "are named. It may be the column that is read, unless that is DATA. A new column holds 0, or the data, outside the "
-      "selection");
+  command->add_option("--column", o->column,
+                      "Column to write. The default is MODEL_DATA, or with --subtract CORRECTED_DATA, which must then be new "
+                      "unless --column and --datacolumn are both given. The column that is read may be overwritten, unless it "
+                      "is DATA. Outside the selection a new column holds 0, or with --subtract the data");
   declare_selection(*command, o->selection);
-  command->add_option("--phasecenter", o->phasecenter,
-                      "Direction, field or TRACKFIELD that the model is about, as in misfit image; what is selected may then "
-                      "have several phase "
-                      "centres. When empty: the data's own; where that moves, directions on the sky stand still");
-  command->add_option("--accuracy", o->accuracy, "Relative accuracy of the visibilities");
+  command->add_option(
+      "--phasecenter", o->phasecenter,
+      "Phase centre of the model: a direction, a field or TRACKFIELD, as for misfit image; several phase centres may then be "
+      "selected. When empty: the data's own phase centre; if that moves, the model stays fixed on the sky");
+  command->add_option("--accuracy", o->accuracy,
+                      "Largest error of the visibilities of --model: RMS of their difference from direct sums, over their RMS");
   list_kernels(*command->add_option("--kernel", o->kernel.name, "Gridding function of --model: a name or a kernel-table file"));
   declare_kernel_folder(*command, o->kernel.folder);
   command->add_option("--threads", o->threads, "Threads; 0 means all cores");
-  command->add_flag("--quiet", o->quiet, "Print nothing");
+  command->add_flag("--quiet", o->quiet, "Print nothing but errors");
   check_before_missing(*command, [o] { check_values(*o); });
   command->callback([command, o, call] {
     o->accuracy_is_typed = command->get_option("--accuracy")->count() > 0;

@@ -147,7 +147,9 @@ BOOST_AUTO_TEST_CASE(corrected_data_that_exist_are_overwritten_only_by_name) {
   for (const Arguments& unnamed : {Arguments{}, Arguments{"--column", "corrected"}, Arguments{"--datacolumn", "data"}}) {
     const Outcome refused = run(subtract + unnamed);
     BOOST_TEST(refused.code == 1);
-    BOOST_TEST(refused.err.find("has a column CORRECTED_DATA already") != std::string::npos);
+    BOOST_TEST(refused.err.find(
+                   "has a column CORRECTED_DATA already; expected --column RESIDUAL_DATA, which leaves it as it is, or "
+                   "--column CORRECTED_DATA --datacolumn corrected, which subtracts from it in place") != std::string::npos);
   }
   BOOST_TEST((visibilities(copy.set, "CORRECTED_DATA") == before));
   succeed(subtract + Arguments{"--column", "corrected", "--datacolumn", "data"});
@@ -166,9 +168,52 @@ BOOST_AUTO_TEST_CASE(subtraction_in_place_is_that_into_another_column_and_refuse
   BOOST_TEST((visibilities(copy.set, "CORRECTED_DATA") == visibilities(copy.set, "BESIDE")));
   const Outcome second = run(in_place);
   BOOST_TEST(second.code == 1);
-  BOOST_TEST(second.err.find("CORRECTED_DATA of " + copy.set + " lacks a model already: misfit predict --subtract") !=
-             std::string::npos);
+  BOOST_TEST(second.err.find(" has already been subtracted from CORRECTED_DATA of " + copy.set) != std::string::npos);
   BOOST_TEST((visibilities(copy.set, "CORRECTED_DATA") == visibilities(copy.set, "BESIDE")));
+}
+
+BOOST_AUTO_TEST_CASE(data_that_are_not_calibrated_are_subtracted_from_with_a_warning_where_there_are_calibrated_ones) {
+  const Copy copy;
+  std::ofstream(copy.folder / "one.csv") << "l_arcsec,m_arcsec,flux_jy\n1,2,3\n";
+  const Arguments predict{"predict", "--vis", copy.set, "--components", copy.folder / "one.csv"};
+  const Arguments subtract = predict + Arguments{"--subtract", "--column", "REST"};
+  const auto warned = [](const Outcome& outcome) {
+    return outcome.err.find("has CORRECTED_DATA, which misfit image takes, but the model is subtracted from DATA") !=
+           std::string::npos;
+  };
+  BOOST_TEST(!warned(run(subtract)));
+  succeed(predict + Arguments{"--column", "corrected"});
+  const Outcome of_data = run(predict + Arguments{"--subtract", "--column", "OTHER"});
+  BOOST_TEST(warned(of_data));
+  BOOST_TEST(of_data.out.find("DATA − model of 351 visibilities in 351 rows written to OTHER") != std::string::npos,
+             of_data.out);
+  const Outcome of_corrected = run(subtract + Arguments{"--datacolumn", "corrected"});
+  BOOST_TEST(!warned(of_corrected));
+  BOOST_TEST(of_corrected.out.find(": CORRECTED_DATA − model of 351 visibilities") != std::string::npos, of_corrected.out);
+  BOOST_TEST(!warned(run(subtract + Arguments{"--datacolumn", "data"})));
+}
+
+BOOST_AUTO_TEST_CASE(rows_and_channels_that_are_not_selected_are_told_of) {
+  const TemporaryFolder folder;
+  const std::string set = folder / "five.ms";
+  succeed({"simulate", "--output", set, "--channels", "5"});
+  std::ofstream(folder / "one.csv") << "l_arcsec,m_arcsec,flux_jy\n1,2,3\n";
+  const Arguments predict{"predict", "--vis", set, "--components", folder / "one.csv"}, some{"--antenna", "!0"};
+  const auto told = [&](const Arguments& options, const std::string& sentence) {
+    const Outcome outcome = run(predict + options);
+    BOOST_TEST(outcome.err.find("warning: " + sentence + "\n") != std::string::npos, outcome.err);
+    return outcome.out;
+  };
+  const std::string rows = "26 of 351 rows";  // 26 of 27 · 26 / 2 baselines
+  const std::string out = told(some, rows + " of " + set + " are not selected: MODEL_DATA is 0 there");
+  BOOST_TEST(out.find("model of 1 625 visibilities in 325 of 351 rows written to MODEL_DATA") != std::string::npos, out);
+  told(some, rows + " of " + set + " are not selected: MODEL_DATA keeps there what it held before");
+  told(some + Arguments{"--subtract", "--column", "REST"}, rows + " of " + set + " are not selected: REST is DATA there");
+  told(some + Arguments{"--spw", "0:1~2", "--column", "A"},
+       rows + ", and channels of the others, of " + set + " are not selected: A is 0 there");
+  told({"--spw", "0:1~2", "--column", "B"}, "channels of " + set + " are not selected: B is 0 there");
+  BOOST_TEST(run(predict).err.find("not selected") == std::string::npos);
+  BOOST_TEST(run(predict + Arguments{"--spw", "0"}).err.find("not selected") == std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(a_model_is_known_again_whatever_its_accuracy_or_the_order_of_its_sources) {
@@ -185,7 +230,7 @@ BOOST_AUTO_TEST_CASE(a_model_is_known_again_whatever_its_accuracy_or_the_order_o
                                  {"--components", copy.folder / "other.csv"}}) {
     const Outcome outcome = run(predict + in_place + again);
     BOOST_TEST(outcome.code == 1);
-    BOOST_TEST(outcome.err.find("lacks a model already") != std::string::npos, outcome.err);
+    BOOST_TEST(outcome.err.find("has already been subtracted from") != std::string::npos, outcome.err);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "tools/run/gridding_options.h"
 #include "tools/run/mosaic_stage.h"
 #include "tools/run/shared_prediction.h"
+#include "tools/run/written_column.h"
 
 namespace misfit::tools {
 
@@ -117,7 +118,8 @@ std::string left_out_of_model_warning(const std::vector<Stokes>& stokes, const m
          (held.size() == 1 ? " is 0 in MODEL_DATA" : " are 0 in MODEL_DATA");
 }
 
-void save_model(const ImageOptions& o, const SavedModel& model, const imager::Ranks& ranks, const imager::Progress& progress) {
+std::string save_model(const ImageOptions& o, const SavedModel& model, const imager::Ranks& ranks,
+                       const imager::Progress& progress) {
   const ModelPlanes planes(model);
   ms_io::ModelColumn column{"MODEL_DATA"};
   column.origin = {"misfit image --savemodel modelcolumn --imagename " + shell_quoted(o.imagename),
@@ -128,6 +130,7 @@ void save_model(const ImageOptions& o, const SavedModel& model, const imager::Ra
     const ms_io::MeasurementSet all(o.vis, selection, o.datacolumn, model.stokes);
     selection = all.selection();
   }
+  std::string words;
   // Antennas and fields of a mosaic have ids of their own in each set.
   const std::size_t sets = o.vis.size(), at_once = o.makes_mosaic() ? 1 : sets;
   for (std::size_t first = 0; first < sets; first += at_once) {
@@ -154,9 +157,11 @@ void save_model(const ImageOptions& o, const SavedModel& model, const imager::Ra
     }
     const auto predict = [&](const imager::SampleCoordinates& at) { return shared.predict(at); };
     for (std::size_t i = first; i < first + at_once; ++i)
-      ms_io::write_model(o.vis[i], selection.of_set(i), column, predict, progress, pace);
+      words +=
+          written_words(o.vis[i], column, ms_io::write_model(o.vis[i], selection.of_set(i), column, predict, progress, pace));
     shared.end();
   }
+  return words;
 }
 
 }  // namespace misfit::tools

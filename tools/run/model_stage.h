@@ -33,8 +33,9 @@ std::string left_out_of_model_warning(const std::vector<imager::Stokes>& stokes,
 
 /// Writes the models' visibilities into MODEL_DATA of each set of the run, about its own phase centre: of parallel hands as the
 /// visibilities of I = (a + b) / 2 and of Q or V = (a − b) / 2, where a is XX or RR and b is YY or LL, and 0 without an image.
-/// Called by all ranks, which have the same models: they predict, and the first writes. Throws what ms_io::write_model does.
-void save_model(const ImageOptions& options, const SavedModel& model, const imager::Ranks& ranks,
-                const imager::Progress& progress);
+/// Called by all ranks, which have the same models: they predict, and the first writes. Returns the first rank's lines on what
+/// was written. Throws what ms_io::write_model does.
+std::string save_model(const ImageOptions& options, const SavedModel& model, const imager::Ranks& ranks,
+                       const imager::Progress& progress);
 
 }  // namespace misfit::tools
