@@ -141,7 +141,8 @@ std::vector<imager::Stokes> stokes_of(const casacore::StokesCoordinate& coordina
   std::vector<imager::Stokes> list;
   for (const casacore::Int code : coordinate.stokes()) {
     if (!imager::is_stokes_code(code))
-      refuse(path, "it has a plane of " + casacore::Stokes::name(casacore::Stokes::type(code)));
+      refuse(path, "it has a plane of " + casacore::Stokes::name(casacore::Stokes::type(code)) +
+                       "; expected planes of I, Q, U and V, or of correlations");
     list.push_back(static_cast<imager::Stokes>(code));
   }
   return list;

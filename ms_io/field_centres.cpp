@@ -138,7 +138,7 @@ class CentreSearch {
     }
     if (nowhere > 0)
       selected_.remarks.push_back("flagged rows of field " + label(field) + " have " + std::to_string(nowhere) +
-                                  " TIMEs at which that is nowhere: these rows are not shifted");
+                                  " TIMEs at which the field's direction is not known: these rows are not shifted");
   }
 
   double time_of(std::uint64_t row) const {
@@ -213,14 +213,14 @@ class CentreSearch {
     for (const auto& [field, row] : selected_.first_row_of_field) {
       if (field == first) continue;
       if (times_.count(field) != times_.count(first))
-        throw std::runtime_error("of fields " + fields_.label(first) + " and " + label(field) + " one moves, by " +
+        throw std::runtime_error("fields " + fields_.label(first) + " and " + label(field) + " differ: one moves, by " +
                                  angle_words(selected_.moved_rad) + ", and one stands still" + remedies);
       for (const double time_s : {times_.at(field).used.front(), times_.at(field).used.back()}) {
         const std::optional<double> apart_rad = apart(centre, first, moment(field, time_s), field);
         if (apart_rad ? *apart_rad <= noticed_motion_rad(beam_rad()) : fields_.name(first) == fields_.name(field)) continue;
         throw std::runtime_error(
             "fields " + fields_.label(first) + " and " + label(field) + " both move, " +
-            (apart_rad ? angle_words(*apart_rad) + " apart" : "and do not say where at each other's times") + remedies);
+            (apart_rad ? angle_words(*apart_rad) + " apart" : "and neither says where it is at the other's times") + remedies);
       }
     }
   }

@@ -79,7 +79,7 @@ void require_one_target(const OpenSets& sets) {
     }
     if (!told && first.name() != other.name())
       throw std::runtime_error(first.label() + " and " + other.label() +
-                               " both move, and neither says where at the other's times; expected fields of one name, or "
+                               " both move, and neither says where it is at the other's times; expected fields of one name, or "
                                "--phasecenter with a direction to shift all to");
   }
 }

@@ -70,7 +70,7 @@ void KeptCells::keep(const ModelJournal& journal, std::size_t setup, const Rows&
   for (std::uint64_t r = 0; r < rows.count(); ++r) append_number(bytes, rows[r]);
   bytes.append(reinterpret_cast<const char*>(cells.data()), cells.nelements() * sizeof(casacore::Complex));
   append_number(bytes, checksum_of(bytes, bytes.size()));
-  replace_file(path_, bytes, "what the cells held that are being written");
+  replace_file(path_, bytes, "the former values of the cells that are being written");
 }
 
 void KeptCells::put_back(const ModelJournal& journal, const std::vector<Setup>& setups, ModelCells& column) const {

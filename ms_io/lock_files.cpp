@@ -60,7 +60,7 @@ std::uint64_t check_lock_file(const std::string& table) {
   if (got < 0) fail(file, std::strerror(error));
   const std::uint32_t requests = number_at(head, 0), length = number_at(head, length_at);
   if (requests > most_requests)
-    fail(file, "it tells of " + std::to_string(requests) + " requests, expected at most " + std::to_string(most_requests));
+    fail(file, "it states " + std::to_string(requests) + " requests, expected at most " + std::to_string(most_requests));
   StoredBytes bytes(file);
   if (length != 0 && state_at + length > bytes.size())
     bytes.fail("a state of " + std::to_string(length) + " bytes", "no more than it holds");

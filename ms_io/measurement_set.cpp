@@ -16,6 +16,7 @@
 #include "ms_io/model_writer.h"
 #include "ms_io/row_shares_internal.h"
 #include "ms_io/row_sights_internal.h"
+#include "ms_io/set_summary_internal.h"
 #include "ms_io/sight_numbers_internal.h"
 #include "ms_io/spectral_part_internal.h"
 #include "ms_io/stokes_response_internal.h"
@@ -97,8 +98,8 @@ std::vector<std::string> columns_of(const std::string& names, std::size_t sets) 
   }
   if (columns.size() == 1) columns.assign(sets, names);
   if (columns.size() == sets) return columns;
-  throw std::runtime_error("data columns '" + names + "' are " + std::to_string(columns.size()) +
-                           "; expected one, or one for each of " + std::to_string(sets) + " sets");
+  throw std::runtime_error("--datacolumn '" + names + "' names " + std::to_string(columns.size()) + " columns; expected one" +
+                           (sets == 1 ? "" : ", or one for each of " + std::to_string(sets) + " sets"));
 }
 
 /// The blocks of one set after the other.
@@ -209,7 +210,7 @@ std::vector<std::string> MeasurementSet::incomplete_columns() const {
 std::vector<DataColumn> MeasurementSet::data_columns() const {
   std::vector<DataColumn> columns;
   for (const auto& set : whole().sets) {
-    columns.push_back({set->path, set->data_column, {}});
+    columns.push_back({set->path, set->data_column, {}, visibility_columns(set->set)});
     for (const SubtractedModel& one : subtracted_models(set->set, set->data_column))
       columns.back().subtracted.push_back(one.command);
   }
@@ -295,15 +296,17 @@ std::vector<float> MeasurementSet::zenith_turns() const {
   }
   return turns;
 }
-imager::UvwReach MeasurementSet::reach(ReachOf rows) const {
-  imager::UvwReach all;
-  for (const auto& set : impl_->sets) {
-    const imager::UvwReach one = scan_uvw(*set, rows);
-    all.max_abs_u = std::max(all.max_abs_u, one.max_abs_u);
-    all.max_abs_v = std::max(all.max_abs_v, one.max_abs_v);
-    all.max_abs_w = std::max(all.max_abs_w, one.max_abs_w);
-  }
-  for (double* reach : {&all.max_abs_u, &all.max_abs_v, &all.max_abs_w}) *reach = imager::largest_of(ranks(), *reach);
+std::vector<SetSummary> MeasurementSet::summaries() const {
+  std::vector<SetSummary> all;
+  for (const auto& set : whole().sets) all.push_back(summary_of(*set));
+  return all;
+}
+SetReach MeasurementSet::reach(ReachOf rows) const {
+  SetReach all;
+  for (const auto& set : impl_->sets) all.join(scan_uvw(*set, rows));
+  for (double* most : {&all.max_abs_u, &all.max_abs_v, &all.max_abs_w, &all.longest_m, &all.longest_lambda})
+    *most = imager::largest_of(ranks(), *most);
+  for (double* least : {&all.shortest_m, &all.shortest_lambda}) *least = -imager::largest_of(ranks(), -*least);
   return all;
 }
 std::vector<SpectralWindow> MeasurementSet::spectral_windows() const {

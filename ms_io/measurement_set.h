@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,6 +22,37 @@ namespace misfit::ms_io {
 /// Usable rows are neither flagged nor of one antenna.
 enum class ReachOf { usable, all };
 
+/// How far samples reach, and the shortest and longest of their projected baselines √(u² + v²): in metres, and in wavelengths
+/// at the lowest and highest channels selected. Without any row the shortest are infinite.
+struct SetReach : imager::UvwReach {
+  double shortest_m = std::numeric_limits<double>::infinity();
+  double longest_m = 0;
+  double shortest_lambda = std::numeric_limits<double>::infinity();
+  double longest_lambda = 0;
+
+  /// Extends the range by the other's.
+  void join(const SetReach& other);
+};
+
+/// A field of a set, of which rows are selected.
+struct NamedField {
+  int id = 0;
+  std::string name;
+};
+
+/// The contents of a set, as far as they are selected, for people.
+struct SetSummary {
+  std::string path;
+  std::string telescope;           ///< empty where OBSERVATION does not say
+  std::uint64_t antennas = 0;      ///< in ANTENNA
+  std::vector<NamedField> fields;  ///< with selected rows, by id
+  std::uint64_t all_fields = 0;    ///< in FIELD
+  std::uint64_t all_windows = 0;   ///< in SPECTRAL_WINDOW
+  std::string start_utc;           ///< of the first integration, ISO 8601; empty where no row has a time
+  std::string end_utc;             ///< of the last
+  double length_s = 0;             ///< between them
+};
+
 /// A range of frequencies, both ends included.
 struct FrequencyRange {
   double low_hz = 0;
@@ -39,6 +71,7 @@ struct DataColumn {
   std::string path;                     ///< of the set
   std::string name;                     ///< "CORRECTED_DATA"
   std::vector<std::string> subtracted;  ///< commands that subtracted models from these data
+  std::string there;                    ///< all columns with visibilities: "DATA, CORRECTED_DATA"
 };
 
 /// A column of which all or some was never filled.
@@ -127,9 +160,12 @@ class MeasurementSet : public imager::VisibilitySource {
   /// order in which blocks hold rows. Dishes on alt-azimuth mounts turn by it; it is 0 for other mounts. Reads times, fields
   /// and antennas of all rows. Throws std::runtime_error when they cannot be read.
   std::vector<float> zenith_turns() const;
+  /// Summaries of all sets, in the order in which they were observed; of what was read when they were opened. Throws
+  /// std::runtime_error when FIELD cannot be read.
+  std::vector<SetSummary> summaries() const;
   /// Bounds at the highest channel selected, of rows with finite UVW. Reads UVW, antennas and FLAG_ROW alone. Throws
   /// std::runtime_error when they cannot be read.
-  imager::UvwReach reach(ReachOf rows = ReachOf::usable) const;
+  SetReach reach(ReachOf rows = ReachOf::usable) const;
   /// The windows of all sets, in the frame that the selection names, and in the order in which it lists them, or of their ids.
   std::vector<SpectralWindow> spectral_windows() const;
   /// Calls visit(coordinates) for groups of rows, which together are all selected rows that have finite UVW and are neither

@@ -104,8 +104,8 @@ imager::Observation joined(const OpenSets& sets) {
       return sets.front()->path + " (field " + all.object + ") and " + sets[i]->path + " (field " + one.object + ") ";
     };
     if (all.moving_at.empty() != one.moving_at.empty())
-      throw std::runtime_error("of " + both() +
-                               "the phase centre of one moves, and one stands still; shift all to one with --phasecenter");
+      throw std::runtime_error(
+          both() + "differ: the phase centre of one moves, and one stands still; shift all to one with --phasecenter");
     const double apart = all.moving_at.empty() ? separation_rad(all.phase_centre, one.phase_centre) : 0;
     if (apart > same_centre_rad)
       throw std::runtime_error(both() + "have phase centres " + angle_words(apart) +

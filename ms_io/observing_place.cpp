@@ -122,8 +122,8 @@ std::string doubt_of(const std::string& telescope, const casacore::MSAntennaColu
 }
 
 std::string dispute_of(const std::string& telescope, double apart_m) {
-  return "TELESCOPE_NAME is '" + telescope + "', which casacore has " + std::to_string(std::lround(apart_m / 1e3)) +
-         " km from where POSITION has the antennas: these are believed";
+  return "TELESCOPE_NAME is '" + telescope + "', which casacore places " + std::to_string(std::lround(apart_m / 1e3)) +
+         " km from the antennas' POSITION: the antennas' positions are used";
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "imager/numerics/constants.h"
 #include "ms_io/ephemeris_internal.h"
 #include "ms_io/parsed_selection_internal.h"
+#include "ms_io/selectable_things_internal.h"
 #include "ms_io/table_access_internal.h"
 
 namespace misfit::ms_io {
@@ -137,6 +138,21 @@ void parse_alone(const casacore::MeasurementSet& set, const Selection& selection
   rows_of(set, expression);
 }
 
+/// The refusal of an expression: what is wrong with it and, where nothing in the set matches, what there is.
+std::string refusal(const casacore::MeasurementSet& set, const SelectionKind& kind, const std::string& expression,
+                    const casacore::AipsError& error) {
+  const std::string option = std::string("--") + kind.option + " '" + expression + "'", words = one_line(error.getMesg());
+  if (says_no_match(words)) {
+    try {
+      const SelectableThings there = selectable_things(set, kind);
+      if (!there.list.empty()) return option + ": the set has no such " + there.singular + "; expected some of " + there.list;
+      if (!there.plural.empty()) return option + ": the set names no " + there.plural + "; expected no --" + kind.option;
+    } catch (const casacore::AipsError&) {  // of a subtable that cannot be read: casacore's words stand
+    }
+  }
+  return option + " selects nothing: " + words + "; expected " + kind.expected;
+}
+
 /// True if a time of the expression may be one without a date.
 bool lacks_date(const std::string& times) {
   const std::vector<std::string> parts = split(times, ',');
@@ -195,8 +211,7 @@ ParsedSelection parse_selection(const casacore::MeasurementSet& set, const std::
     try {
       parse_alone(set, selection, parser, parsed);
     } catch (const casacore::AipsError& error) {
-      throw std::runtime_error(path + ": --" + kind.option + " '" + expression +
-                               "' selects nothing: " + one_line(error.getMesg()) + "; expected " + kind.expected);
+      throw std::runtime_error(path + ": " + refusal(set, kind, expression, error));
     }
     if (parser.give) (all.*parser.give)(expression);
     among_rows = among_rows || !parser.alone;

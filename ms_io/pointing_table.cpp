@@ -60,7 +60,7 @@ struct PointingTable::Entry {
 
 namespace {
 
-constexpr const char* remedy = "; expected where all antennas pointed at the times of their rows, or no --usepointing";
+constexpr const char* remedy = "; expected entries of all antennas at the times of their rows, or no --usepointing";
 
 std::string doing(const OpenSet& open_set) {
   return "cannot read POINTING of " + open_set.path;
@@ -187,7 +187,7 @@ void PointingTable::refuse(const std::string& lack) const {
 
 imager::SkyDirection PointingTable::at(int antenna, const RowTime& when) {
   const auto found = of_antenna_.find(antenna);
-  if (found == of_antenna_.end()) refuse("of " + label(antenna) + ", which rows have");
+  if (found == of_antenna_.end()) refuse("of " + label(antenna) + ", which the selected rows have");
   const std::vector<Entry>& entries = found->second;
   const auto on_sky = [&](const MVDirection& towards, const Entry& entry) {
     return translated("cannot find where antenna " + std::to_string(antenna) + " of " + open_set_.path + " pointed",

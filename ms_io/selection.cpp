@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "ms_io/field_centres_internal.h"
+#include "ms_io/selectable_things_internal.h"
 #include "ms_io/selection_internal.h"
 #include "ms_io/setup_internal.h"
 #include "ms_io/spectral_frame_internal.h"
@@ -27,11 +28,13 @@ struct TimedRow {
   int data_description = 0;
   std::uint64_t row = 0;
 
-  /// Rows without a time come last: some writers leave 0 in rows that they flag.
+  /// False for rows of some writers, which leave 0 where they flag.
+  bool timed() const { return std::isfinite(time_s) && time_s > 0; }
+
+  /// Rows without a time come last.
   bool before(const TimedRow& other) const {
     const auto key = [](const TimedRow& r) {
-      const bool timed = std::isfinite(r.time_s) && r.time_s > 0;
-      return std::tuple(!timed, timed ? r.time_s : 0, r.field, r.data_description, r.row);
+      return std::tuple(!r.timed(), r.timed() ? r.time_s : 0, r.field, r.data_description, r.row);
     };
     return key(*this) < key(other);
   }
@@ -60,6 +63,10 @@ class BlockBuilder {
     ++result_.setups[setup].rows_of_field[at.field];
     TimedRow& first = first_of_field_.emplace(at.field, at).first->second;
     if (at.before(first)) first = at;
+    if (at.timed() && at.time_s >= last_s_) {
+      last_s_ = at.time_s;
+      result_.last_row = at.row;
+    }
     BlockRows& block = pending_[setup];
     append(block.runs, at.row);
     if (++block.rows >= rows_per_block_[setup]) flush(setup);
@@ -125,6 +132,7 @@ class BlockBuilder {
   RowUse use_;
   SelectedRows result_;
   std::map<int, TimedRow> first_of_field_;
+  double last_s_ = 0;
   std::map<Key, std::size_t> setup_;
   std::map<int, double> reference_frequency_hz_;  ///< by DATA_DESC_ID
   std::vector<BlockRows> pending_;                ///< [setup]
@@ -177,8 +185,11 @@ SelectedRows find_rows(const casacore::MeasurementSet& set, const std::string& p
   SelectedRows selected = builder.finish();
   if (selected.rows > 0) return selected;
   const std::string given = to_text(selection);
-  throw std::runtime_error(path + ": " + (given.empty() ? "there is" : given + " selects") + " none of its " +
-                           std::to_string(set.nrow()) + " rows");
+  const std::string rows = std::to_string(set.nrow()) + " rows";
+  const std::string there = things_there(set, selection);
+  throw std::runtime_error(
+      path + (given.empty() ? " has " + rows + ", and none can be taken" : ": " + given + " selects none of its " + rows) +
+      "; expected at least one" + (there.empty() ? "" : "; the set has " + there));
 }
 
 }  // namespace

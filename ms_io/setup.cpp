@@ -91,8 +91,8 @@ Setup SetupTable::setup(int data_description, const ParsedSelection& parsed) con
     setup.channel_width_hz.push_back(std::isfinite(width[c]) ? std::abs(width[c]) : 0.0);
   }
   if (setup.channels.empty()) {
-    throw std::runtime_error(path_ + ": no channel of spectral window " + std::to_string(window) + " is selected; it has " +
-                             std::to_string(frequency.size()));
+    throw std::runtime_error(path_ + ": no channel of spectral window " + std::to_string(window) +
+                             " is selected; expected at least one of its " + std::to_string(frequency.size()) + " channels");
   }
   return setup;
 }

@@ -28,7 +28,7 @@ StoredBytes::StoredBytes(std::string path, std::string gathered)
     : path_(std::move(path)), size_(gathered.size()), window_(std::move(gathered)) {}
 
 void StoredBytes::fail(const std::string& tells, const std::string& expected) const {
-  throw std::runtime_error("cannot read " + path_ + ": it tells of " + tells + ", expected " + expected);
+  throw std::runtime_error("cannot read " + path_ + ": it states " + tells + ", expected " + expected);
 }
 
 void StoredBytes::fetch(std::uint64_t at, char* to, std::size_t count) {

@@ -22,14 +22,6 @@ bool is_visibility_column(const casacore::ColumnDesc& column) {
   return column.isArray() && column.dataType() == casacore::TpComplex;
 }
 
-std::string visibility_columns(const casacore::TableDesc& description) {
-  std::string list;
-  for (casacore::uInt column = 0; column < description.ncolumn(); ++column) {
-    if (is_visibility_column(description[column])) list += (list.empty() ? "" : ", ") + description[column].name();
-  }
-  return list.empty() ? "none" : list;
-}
-
 void require_main_columns(const casacore::Table& table, const std::string& path) {
   std::string missing;
   for (const casacore::String& column : casacore::MS::requiredTableDesc().columnNames()) {
@@ -69,8 +61,7 @@ casacore::MeasurementSet opened(const std::string& path, Access access) {
   casacore::MeasurementSet set(path, lock, option);
   if (update && !set.lock(casacore::FileLocker::Write, lock_attempts)) {
     throw std::runtime_error(path +
-                             " is locked by another process; expected one that is not being written, or read by a program "
-                             "that keeps it locked");
+                             " is locked by another process; expected a set that no other program writes or keeps locked");
   }
   // Counts as written from here on. casacore would truncate table.info to write the same again.
   if (update) set.tableInfo().flush("/dev/null");
@@ -132,11 +123,20 @@ std::string column_name(const casacore::Table& table, const std::string& name) {
   return table.tableDesc().isColumn("CORRECTED_DATA") ? "CORRECTED_DATA" : "DATA";
 }
 
+std::string visibility_columns(const casacore::Table& table) {
+  const casacore::TableDesc& description = table.tableDesc();
+  std::string list;
+  for (casacore::uInt column = 0; column < description.ncolumn(); ++column) {
+    if (is_visibility_column(description[column])) list += (list.empty() ? "" : ", ") + description[column].name();
+  }
+  return list.empty() ? "none" : list;
+}
+
 void require_visibility_column(const casacore::Table& table, const std::string& path, const std::string& column) {
   const casacore::TableDesc& description = table.tableDesc();
   if (description.isColumn(column) && is_visibility_column(description[column])) return;
   throw std::runtime_error(path + " has no visibilities in a column '" + column +
-                           "'; columns with visibilities: " + visibility_columns(description) +
+                           "'; columns with visibilities: " + visibility_columns(table) +
                            (description.isColumn("FLOAT_DATA") ? " (FLOAT_DATA holds real numbers)" : ""));
 }
 

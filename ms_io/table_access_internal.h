@@ -51,6 +51,9 @@ std::string column_name(const std::string& name);
 /// The name of a column in `table`, where auto is CORRECTED_DATA if there is such a column, else DATA.
 std::string column_name(const casacore::Table& table, const std::string& name);
 
+/// The columns with complex visibilities, "DATA, CORRECTED_DATA", or "none".
+std::string visibility_columns(const casacore::Table& table);
+
 /// Throws std::runtime_error, which lists the columns there are, unless `column` holds complex visibilities.
 void require_visibility_column(const casacore::Table& table, const std::string& path, const std::string& column);
 

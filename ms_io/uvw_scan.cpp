@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "imager/numerics/constants.h"
 #include "ms_io/row_columns_internal.h"
@@ -86,18 +87,42 @@ void visit_uvw(const OpenSet& open_set, const std::function<void(const imager::S
   scan(open_set, ReachOf::usable, visit);
 }
 
-imager::UvwReach scan_uvw(const OpenSet& open_set, ReachOf rows) {
-  imager::UvwReach reach;
+void SetReach::join(const SetReach& other) {
+  max_abs_u = std::max(max_abs_u, other.max_abs_u);
+  max_abs_v = std::max(max_abs_v, other.max_abs_v);
+  max_abs_w = std::max(max_abs_w, other.max_abs_w);
+  shortest_m = std::min(shortest_m, other.shortest_m);
+  longest_m = std::max(longest_m, other.longest_m);
+  shortest_lambda = std::min(shortest_lambda, other.shortest_lambda);
+  longest_lambda = std::max(longest_lambda, other.longest_lambda);
+}
+
+SetReach scan_uvw(const OpenSet& open_set, ReachOf rows) {
+  SetReach all;
   scan(open_set, rows, [&](const imager::SampleCoordinates& some) {
+    if (some.rows() == 0) return;
     std::array<double, 3> reach_m{0, 0, 0};
-    for (std::size_t i = 0; i < some.uvw_m.size(); ++i) reach_m[i % 3] = std::max(reach_m[i % 3], std::abs(some.uvw_m[i]));
-    const double highest_hz = *std::max_element(some.frequency_hz.begin(), some.frequency_hz.end());
-    const double per_m = highest_hz / imager::speed_of_light_m_s;
-    reach.max_abs_u = std::max(reach.max_abs_u, reach_m[0] * per_m);
-    reach.max_abs_v = std::max(reach.max_abs_v, reach_m[1] * per_m);
-    reach.max_abs_w = std::max(reach.max_abs_w, reach_m[2] * per_m);
+    double shortest_square = std::numeric_limits<double>::infinity(), longest_square = 0;  // m²
+    for (std::size_t row = 0; row < some.rows(); ++row) {
+      const double* const uvw_m = some.uvw_m.data() + 3 * row;
+      for (std::size_t axis = 0; axis < 3; ++axis) reach_m[axis] = std::max(reach_m[axis], std::abs(uvw_m[axis]));
+      const double square = uvw_m[0] * uvw_m[0] + uvw_m[1] * uvw_m[1];
+      shortest_square = std::min(shortest_square, square);
+      longest_square = std::max(longest_square, square);
+    }
+    const auto [lowest_hz, highest_hz] = std::minmax_element(some.frequency_hz.begin(), some.frequency_hz.end());
+    const double per_m = *highest_hz / imager::speed_of_light_m_s;
+    SetReach one;
+    one.max_abs_u = reach_m[0] * per_m;
+    one.max_abs_v = reach_m[1] * per_m;
+    one.max_abs_w = reach_m[2] * per_m;
+    one.shortest_m = std::sqrt(shortest_square);
+    one.longest_m = std::sqrt(longest_square);
+    one.shortest_lambda = one.shortest_m * *lowest_hz / imager::speed_of_light_m_s;
+    one.longest_lambda = one.longest_m * per_m;
+    all.join(one);
   });
-  return reach;
+  return all;
 }
 
 double finest_beam_rad(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected) {

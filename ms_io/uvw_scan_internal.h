@@ -10,7 +10,7 @@
 namespace misfit::ms_io {
 
 /// See MeasurementSet::reach().
-imager::UvwReach scan_uvw(const OpenSet& open_set, ReachOf rows);
+SetReach scan_uvw(const OpenSet& open_set, ReachOf rows);
 /// See MeasurementSet::visit_coordinates().
 void visit_uvw(const OpenSet& open_set, const std::function<void(const imager::SampleCoordinates&)>& visit);
 

@@ -130,7 +130,7 @@ void check_kills(const SmallSet& set, const ModelColumn& column) {
       BOOST_TEST(of_stages(state.column, before.column, blank, after.column));
       const std::string incomplete = incomplete_column(left.path(), column.name);
       if (column.in_place() && incomplete.empty() && state.column == after.column) {
-        BOOST_TEST(contains(error_of([&] { write(left, column); }), "lacks a model already"));
+        BOOST_TEST(contains(error_of([&] { write(left, column); }), "has already been subtracted from"));
       } else {
         BOOST_TEST(write(left, column) == (incomplete.empty() ? "" : incomplete + ", going on"));
       }

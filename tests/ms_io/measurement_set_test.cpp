@@ -26,8 +26,8 @@ std::string error_of(const SmallSet& set, const Selection& selection, const std:
 }
 
 /// By the definition, from every sample of weight not 0.
-imager::UvwReach reach_of_samples(const MeasurementSet& set) {
-  imager::UvwReach reach;
+SetReach reach_of_samples(const MeasurementSet& set) {
+  SetReach reach;
   const auto stream = set.open();
   while (const auto block = stream->next()) {
     for (std::size_t i = 0; i < block->samples(); ++i) {
@@ -37,6 +37,11 @@ imager::UvwReach reach_of_samples(const MeasurementSet& set) {
       reach.max_abs_u = std::max(reach.max_abs_u, std::abs(uvw_m[0]) * per_m);
       reach.max_abs_v = std::max(reach.max_abs_v, std::abs(uvw_m[1]) * per_m);
       reach.max_abs_w = std::max(reach.max_abs_w, std::abs(uvw_m[2]) * per_m);
+      const double baseline_m = std::hypot(uvw_m[0], uvw_m[1]);
+      reach.shortest_m = std::min(reach.shortest_m, baseline_m);
+      reach.longest_m = std::max(reach.longest_m, baseline_m);
+      reach.shortest_lambda = std::min(reach.shortest_lambda, baseline_m * per_m);
+      reach.longest_lambda = std::max(reach.longest_lambda, baseline_m * per_m);
     }
   }
   return reach;
@@ -83,13 +88,38 @@ BOOST_AUTO_TEST_CASE(the_reach_is_that_of_the_samples_that_can_be_used) {
   for (const std::string spw : {"", "0", "1", "0:2~3", "1:0"}) {
     for (const std::uint64_t block_samples : {std::uint64_t{1}, std::uint64_t{1} << 20}) {
       const MeasurementSet opened(set.path(), {"", spw}, "DATA", {imager::Stokes::I}, block_samples);
-      const imager::UvwReach is = opened.reach(), should = reach_of_samples(opened);
+      const SetReach is = opened.reach(), should = reach_of_samples(opened);
       const auto rounding = boost::test_tools::tolerance(1e-15);
       BOOST_TEST(is.max_abs_u == should.max_abs_u, rounding);
       BOOST_TEST(is.max_abs_v == should.max_abs_v, rounding);
       BOOST_TEST(is.max_abs_w == should.max_abs_w, rounding);
+      BOOST_TEST(is.shortest_m == should.shortest_m, rounding);
+      BOOST_TEST(is.longest_m == should.longest_m, rounding);
+      BOOST_TEST(is.shortest_lambda == should.shortest_lambda, rounding);
+      BOOST_TEST(is.longest_lambda == should.longest_lambda, rounding);
     }
   }
+}
+
+BOOST_AUTO_TEST_CASE(a_summary_tells_of_the_rows_selected) {
+  const SmallSet set;
+  set.add_field(1.25, -0.5);  // every second row is its
+  set.add_spectral_window();
+  set.put("TIME", 29, 0.0);  // of a writer that leaves rows without a time
+  const std::vector<SetSummary> all = MeasurementSet(set.path(), {"OTHER", "0"}, "").summaries();
+  BOOST_REQUIRE(all.size() == 1U);
+  const SetSummary& one = all.front();
+  BOOST_TEST(one.path == set.path());
+  BOOST_TEST(one.antennas == antennas);
+  BOOST_REQUIRE(one.fields.size() == 1U);
+  BOOST_TEST(one.fields.front().id == 1);
+  BOOST_TEST(one.fields.front().name == "OTHER");
+  BOOST_TEST(one.all_fields == 2U);
+  BOOST_TEST(one.all_windows == 2U);
+  BOOST_TEST(one.start_utc.substr(0, 16) == "2014-02-24T23:06");  // 4.9e9 s is 23:06:40
+  BOOST_TEST(one.end_utc.substr(0, 16) == "2014-02-24T23:07");    // 40 s later, and an integration longer
+  const double interval_s = casacore::ScalarColumn<double>(casacore::Table(set.path()), "INTERVAL")(0);
+  BOOST_TEST(one.length_s == 40 + interval_s, boost::test_tools::tolerance(1e-6));  // times are good to 1e-6 s
 }
 
 BOOST_AUTO_TEST_CASE(coordinates_are_those_of_the_rows_that_can_be_used) {

@@ -239,12 +239,12 @@ BOOST_AUTO_TEST_CASE(what_pointing_does_not_say_is_an_error_that_names_it) {
     return error_of([&] { MeasurementSet(set.path(), by_pointing(1e-4), "DATA"); });
   };
   const SmallSet set;
-  const std::string remedy = "; expected where all antennas pointed at the times of their rows, or no --usepointing";
+  const std::string remedy = "; expected entries of all antennas at the times of their rows, or no --usepointing";
   BOOST_TEST(error(set) == set.path() + ": POINTING has no rows" + remedy);
   std::vector<Entry> entries;
   for (int antenna = 0; antenna < 3; ++antenna) entries.push_back({antenna, start_s + 10, 40, {1.25, -0.5}});
   write_pointing(set, entries);
-  BOOST_TEST(error(set) == set.path() + ": POINTING has no entries of antenna 3 (A3), which rows have" + remedy);
+  BOOST_TEST(error(set) == set.path() + ": POINTING has no entries of antenna 3 (A3), which the selected rows have" + remedy);
   write_pointing(set, {{3, start_s + 10, 10, {1.25, -0.5}}});  // it reaches 10 s
   const std::string lack = set.path() + ": POINTING has no entries that tell where antenna 3 (A3) pointed at ";
   BOOST_TEST(error(set) == lack + "2014-02-24T23:07:10.000" + remedy);

@@ -232,6 +232,37 @@ BOOST_AUTO_TEST_CASE(what_selects_nothing_is_one_line_that_names_what_was_given)
   BOOST_TEST(contains(error_of_selection(set, apart), "--timerange '>23:07:15' --scan '10' selects none of its 30 rows"));
 }
 
+BOOST_AUTO_TEST_CASE(what_a_set_does_not_have_is_answered_with_what_it_has) {
+  const ManySet set;
+  const std::vector<std::pair<Selection, std::string>> missing = {
+      {one(&Selection::field, "3C294"), "--field '3C294': the set has no such field; expected some of 0 '3C 295', 1 'OTHER'"},
+      {one(&Selection::spectral_window, "7"),
+       "--spw '7': the set has no such spectral window; expected some of 0 (1 to 1.005 GHz, 6 channels), 1 (2 to 2.005 GHz, "
+       "6 channels)"},
+      {one(&Selection::antenna, "Z9"),
+       "--antenna 'Z9': the set has no such antenna; expected some of 0 'A0', 1 'A1', 2 'A2', 3 'A3'"},
+      {one(&Selection::intent, "*SLEEP*"),
+       "the set has no such intent; expected some of 'CALIBRATE_PHASE#ON_SOURCE', 'OBSERVE_TARGET#ON_SOURCE'"},
+      {one(&Selection::scan, "99"), "at least one; the set has scans 10, 11, 12, 13, 14"},
+      {one(&Selection::observation, "5"), "at least one; the set has observations 0, 1"},
+      {one(&Selection::time_range, ">2020/01/01"), "at least one; the set has times 2014/02/24/23:06:40~2014/02/24/23:07:20"}};
+  for (const auto& [selection, expected] : missing) {
+    const std::string error = error_of_selection(set, selection);
+    BOOST_TEST(contains(error, expected), error);
+  }
+  // What cannot be read is answered with what may be written.
+  BOOST_TEST(contains(error_of_selection(set, one(&Selection::field, "3~")), "expected fields by id, name or pattern"));
+}
+
+BOOST_AUTO_TEST_CASE(of_many_things_in_a_set_ten_are_listed_and_of_none_it_is_said) {
+  const SmallSet set;
+  set.modify([](casacore::MeasurementSet& ms) {
+    ms.antenna().addRow(8);
+    for (casacore::rownr_t id = 4; id < 12; ++id) casacore::MSAntennaColumns(ms.antenna()).name().put(id, "B");
+  });
+  BOOST_TEST(contains(error_of_selection(set, one(&Selection::antenna, "Z9")), ", 9 'B' and 2 more"));
+}
+
 BOOST_AUTO_TEST_CASE(of_real_sets_the_samples_are_those_of_a_query) {
   struct RealLaws {
     std::string set, column;

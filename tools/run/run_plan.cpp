@@ -13,9 +13,11 @@
 #include "tools/base/quantity.h"
 #include "tools/base/text.h"
 #include "tools/run/data_columns.h"
+#include "tools/run/data_summary.h"
 #include "tools/run/gridding_options.h"
 #include "tools/run/memory_plan.h"
 #include "tools/run/outside_stage.h"
+#include "tools/run/pixel_plan.h"
 #include "tools/run/primary_beam_stage.h"
 #include "tools/run/product_kinds.h"
 #include "tools/run/scale_forecast.h"
@@ -56,6 +58,7 @@ class RunPlanner {
     const imager::GriddingRequest unlimited = request;
     if (o_.memory_gib > 0) limit_memory(o_.memory_gib * gib, request);
     plan_.gridding = plan_gridding(request);
+    plan_.decisions = data_decisions(scene_.set, scene_.reach);
     decide_pixels();
     if (!scene_.set.ranks().alone()) decide_sharing();
     if (o_.taylor.nterms > 1) decide_terms();
@@ -113,11 +116,9 @@ class RunPlanner {
   }
 
   void decide_pixels() {
-    const imager::ImageGeometry& g = scene_.geometry;
-    const bool told = has_unit(o_.cell);
-    const std::string because = "--cell " + o_.cell + (told ? "" : " has no unit, and is in arcsec as in tclean");
-    decide("pixels", std::to_string(g.width) + " × " + std::to_string(g.height) + " of " + angle_text(g.cell_rad, 6), because);
-    if (!told) progress_.say(because);
+    plan_.decisions.push_back(pixels_decision(o_, scene_.geometry, scene_.reach.longest_lambda));
+    plan_.decisions.push_back(field_decision(o_, scene_.geometry, scene_.set));
+    if (!has_unit(o_.cell)) progress_.say(cell_words(o_));
   }
 
   void decide_columns() {
@@ -206,7 +207,8 @@ class RunPlanner {
     const bool harms = phase_rad > (o_.gridding.accuracy == 0 ? plan_.gridding.worst_error : o_.gridding.accuracy);
     if (plan_.gridding.leaves_w_out() && harms)
       plan_.warnings.push_back("w is neglected although its phase reaches " + significant(phase_rad, 2) +
-                               " rad at the image's corner: the image's error there is of that size");
+                               " rad at the image's corner: the image's error there is of that size; --gridder wide "
+                               "takes w exactly");
   }
 
   const RunScene& scene_;

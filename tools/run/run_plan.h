@@ -21,7 +21,7 @@ struct RunScene {
   const ms_io::MeasurementSet& set;
   const imager::Ranks& ranks;  ///< that take part in the run
   imager::ImageGeometry geometry;
-  imager::UvwReach reach;
+  ms_io::SetReach reach;
   int threads = 1;
   bool mask = false;                                         ///< there is or will be one, where components may lie
   const TakenFiles* taken = nullptr;                         ///< null where all images are made
