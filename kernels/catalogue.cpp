@@ -14,14 +14,14 @@ namespace misfit::kernels {
 
 void KernelFamily::require_width(int width) const {
   if (width < min_width || width > max_width)
-    throw std::invalid_argument("kernel width " + std::to_string(width) + " not in [" + std::to_string(min_width) + ", " +
-                                std::to_string(max_width) + "], which kernel " + name + " offers");
+    throw std::invalid_argument("kernel " + name + ": width " + std::to_string(width) + ", expected " +
+                                std::to_string(min_width) + " to " + std::to_string(max_width));
 }
 
 void KernelFamily::require_x0(double x0) const {
   if (!(x0 >= min_x0 && x0 <= max_x0))
-    throw std::invalid_argument("x0 = " + text_of(x0) + " not in [" + text_of(min_x0) + ", " + text_of(max_x0) +
-                                "], which kernel " + name + " offers");
+    throw std::invalid_argument("kernel " + name + ": x0 = " + text_of(x0) + ", expected " + text_of(min_x0) + " to " +
+                                text_of(max_x0));
 }
 
 Kernel KernelFamily::make(int width, double x0) const {

@@ -335,8 +335,10 @@ KernelTable read_kernel_table(const fs::path& path) {
 KernelTable read_intact_kernel_table(const fs::path& path) {
   KernelTable table = read_kernel_table(path);
   if (!table.checksum_ok)
-    throw std::runtime_error("kernel table " + path.string() +
-                             " does not match its checksum: it has changed since it was written");
+    throw std::runtime_error(
+        "kernel table " + path.string() +
+        " does not match its checksum: it was changed or cut short after it was written; expected the file "
+        "as misfit kernel wrote it");
   return table;
 }
 

@@ -94,10 +94,10 @@ MisfitSolution least_misfit_solution(int width, double x0) {
 
 void check_least_misfit_request(const std::string& name, int width, double x0) {
   if (width < 1 || width > least_misfit_max_width)
-    throw std::invalid_argument(name + " kernel: width " + std::to_string(width) + " not in [1, " +
-                                std::to_string(least_misfit_max_width) + "]");
+    throw std::invalid_argument("kernel " + name + ": width " + std::to_string(width) + ", expected 1 to " +
+                                std::to_string(least_misfit_max_width));
   if (!(x0 >= least_misfit_min_x0 && x0 <= least_misfit_max_x0))
-    throw std::invalid_argument(name + " kernel: x0 = " + std::to_string(x0) + " not in [0.01, 0.49]");
+    throw std::invalid_argument("kernel " + name + ": x0 = " + std::to_string(x0) + ", expected 0.01 to 0.49");
 }
 
 LeastMisfit solve_least_misfit(int width, double x0) {

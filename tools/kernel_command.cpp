@@ -65,9 +65,16 @@ void check_values(const KernelOptions& o) {
   if (o.x0 != 0) family.require_x0(o.x0);
 }
 
+void refuse_two_paddings(const KernelOptions& o) {
+  refuse(o.x0 != 0 && o.padding != 0, "x0", significant(o.x0, 6) + " beside --padding " + significant(o.padding, 6),
+         "either --x0 or --padding");
+}
+
 void check_given(const KernelOptions& o) {
-  if (o.width == 0) throw std::invalid_argument("expected --width, the number of cells a visibility touches per axis");
-  if ((o.x0 == 0) == (o.padding == 0)) throw std::invalid_argument("expected either --x0 or --padding");
+  if (o.width == 0)
+    throw std::invalid_argument("no width is given: expected --width, the number of cells a visibility touches per axis");
+  if (o.x0 == 0 && o.padding == 0) throw std::invalid_argument("no padding is given: expected either --x0 or --padding");
+  refuse_two_paddings(o);
 }
 
 /// The part of E that looking the table up adds.
@@ -166,8 +173,9 @@ void inspect(const KernelOptions& o) {
   else
     print(table, o.inspect);
   if (!table.checksum_ok)
-    throw std::runtime_error("warning: " + o.inspect +
-                             " does not match its checksum; expected the file as it was written, without a change");
+    throw std::runtime_error(o.inspect +
+                             " does not match its checksum: it was changed or cut short after it was written; "
+                             "expected the file as misfit kernel wrote it");
 }
 
 void make(const KernelOptions& o) {
@@ -219,14 +227,14 @@ void check_emission(const KernelOptions& o) {
   if (targeted && o.emit.force)
     throw std::invalid_argument("--force: expected it without --target-error, which makes a kernel for the host's padding");
   if (!o.job.imsize.empty() && !find_host(o.emit.host).depends_on_pixels)
-    throw std::invalid_argument("--imsize: what --emit " + o.emit.host +
-                                " says does not depend on it; expected it beside --emit wsclean or --accuracy");
+    throw std::invalid_argument("--imsize: the kernel of --emit " + o.emit.host +
+                                " does not depend on the image; expected --imsize beside --emit wsclean or --accuracy");
 }
 
 /// Writes the kernel as a host wants it.
 void emit(KernelOptions& o) {
   check_emission(o);
-  if (o.x0 != 0 && o.padding != 0) throw std::invalid_argument("expected either --x0 or --padding");
+  refuse_two_paddings(o);
   const kernels::KernelFamily family = choose_kernel(o.kernel);
   o.emit.width = o.width;
   o.emit.degree = o.degree;
@@ -267,46 +275,54 @@ void choose(KernelOptions& o) {
 void add_kernel_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("kernel", "Make a kernel-table file, or show what is in one");
   const auto o = std::make_shared<KernelOptions>();
-  list_kernels(
-      *command->add_option("--kernel", o->kernel.name, "Gridding function: a name, or a kernel-table file to tabulate anew"));
+  list_kernels(*command->add_option("--kernel", o->kernel.name,
+                                    "Gridding function: a name, or a kernel-table file, which is tabulated anew"));
   declare_kernel_folder(*command, o->kernel.folder);
-  command->add_option("--width", o->width, "Cells a visibility touches per axis")
+  command->add_option("--width", o->width, "Grid cells that a visibility touches per axis")
       ->check(not_zero("the number of cells a visibility touches per axis"));
-  command->add_option("--x0", o->x0, "Half the part of the FFT image that is kept; or give --padding")
+  command->add_option("--x0", o->x0, "Half the part of the FFT image that is kept, 1 / (2 padding); or give --padding")
       ->check(not_zero("more than 0, below 0.5"));
   command->add_option("--padding", o->padding, "FFT size over image size, 1 / (2 x0)")
       ->check(not_zero("more than 1, at most 500"));
   CLI::Option* accuracy =
-      command->add_option("--accuracy", o->job.accuracy, "Choose width and padding that reach it at the least cost")
+      command->add_option("--accuracy", o->job.accuracy, "Choose the width and padding that reach this error at the least cost")
           ->check(not_zero("a number above 0 and below 1"));
-  command->add_option("--imsize", o->job.imsize, "Of the image: width, or width and height, in pixels")->expected(1, 2);
-  command->add_option("--samples", o->job.samples, "Visibilities to be gridded")->needs(accuracy);
-  command->add_option("--w-turns", o->job.w_turns, "Range of w in wavelengths times the image's range of n - 1; 0 = no w axis")
+  command
+      ->add_option("--imsize", o->job.imsize, "Width, or width and height, of the image in pixels; with --accuracy or --emit")
+      ->expected(1, 2);
+  command->add_option("--samples", o->job.samples, "Number of visibilities, with which --accuracy weighs the cost of gridding")
       ->needs(accuracy);
-  command->add_option("--sampling", o->sampling.per_cell, "Rows of the lookup table a cell");
-  command->add_option("--interpolation", o->sampling.interpolation, "Degree to which a host is to interpolate it, 0 to 3");
-  command->add_option("--degree", o->degree, "Cut the polynomials to this degree; -1 = as many terms as the kernel has");
+  command
+      ->add_option("--w-turns", o->job.w_turns, "Range of w in wavelengths times the image's range of n - 1; 0 means no w axis")
+      ->needs(accuracy);
+  command->add_option("--sampling", o->sampling.per_cell, "Rows of the lookup table per cell");
+  command->add_option("--interpolation", o->sampling.interpolation,
+                      "Degree of the interpolation with which a host will read the table, 0 to 3");
+  command->add_option("--degree", o->degree, "Cut the polynomials to this degree; -1 keeps all the kernel's terms");
   CLI::Option* host =
-      command->add_option("--emit", o->emit.host, "Write --output as this host wants it")->check(values_are(host_names()));
-  command->add_option("--host-padding", o->emit.host_padding, "Padding that the host will use, where it is not its own")
+      command->add_option("--emit", o->emit.host, "Write --output in this host's format")->check(values_are(host_names()));
+  command->add_option("--host-padding", o->emit.host_padding, "Padding with which the host will be run, if not its default")
       ->check(not_zero("more than 1, at most 500"))
       ->needs(host);
   command
-      ->add_option("--target-error", o->emit.target_error, "Choose width, sampling and degree with which the host reaches it")
+      ->add_option("--target-error", o->emit.target_error,
+                   "Choose the width, sampling and degree with which the host reaches this error (RMS)")
       ->check(not_zero("a number above 0 and below 1"))
       ->needs(host);
   host->excludes(accuracy);
-  command->add_flag("--force", o->emit.force, "Emit a kernel that is made for another padding than the host's")->needs(host);
-  CLI::Option* output = command->add_option("--output", o->output, "File to write: FITS, or what --emit says")
-                            ->type_name(file_type)
-                            ->check(not_empty());
+  command->add_flag("--force", o->emit.force, "Emit the kernel even if it was made for another padding than the host's")
+      ->needs(host);
+  CLI::Option* output =
+      command->add_option("--output", o->output, "File to write: a FITS kernel table, or the format of --emit")
+          ->type_name(file_type)
+          ->check(not_empty());
   command->add_flag("--quiet", o->quiet, "Print nothing but errors");
   CLI::Option* inspected = command->add_option("--inspect", o->inspect, "Kernel-table file to show")->type_name(file_type);
   inspected->excludes(output)->excludes(accuracy)->excludes(host);
   for (const char* making :
        {"--kernel", "--kernel-folder", "--width", "--x0", "--padding", "--sampling", "--interpolation", "--degree", "--quiet"})
     inspected->excludes(command->get_option(making));
-  command->add_flag("--json", o->json, "Print for machines what --inspect or --emit say");
+  command->add_flag("--json", o->json, "Print the output of --inspect or --emit as JSON");
   const CLI::Option* sampling = command->get_option("--sampling");
   const CLI::Option* interpolation = command->get_option("--interpolation");
   command->callback([o, sampling, interpolation] {
@@ -321,7 +337,8 @@ void add_kernel_command(CLI::App& program) {
     if (o->json) throw std::invalid_argument("--json: expected --inspect or --emit beside it");
     if (!choosing && !o->job.imsize.empty()) throw std::invalid_argument("--imsize: expected --accuracy or --emit beside it");
     if (choosing) choose(*o);
-    if (o->output.empty() && !choosing) throw std::invalid_argument("expected one of --output, --inspect and --accuracy");
+    if (o->output.empty() && !choosing)
+      throw std::invalid_argument("no output is given: expected one of --output, --inspect and --accuracy");
     if (!o->output.empty()) make(*o);
   });
 }

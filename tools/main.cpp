@@ -40,7 +40,7 @@ int fail(const char* message, ExitCode code, const World& world) {
 
 /// For exceptions that nothing can catch: casacore throws some while it closes tables.
 [[noreturn]] void end_at_once() {
-  std::string why = "an error that is none";
+  std::string why = "an unknown error";
   try {
     if (std::current_exception()) throw;
   } catch (const std::exception& error) {

@@ -9,7 +9,8 @@
 namespace misfit::tools {
 
 void add_mosaic_command(CLI::App& program, const CommandCall& call) {
-  CLI::App* command = program.add_subcommand("mosaic", "Make one image of those of several pointings, by their primary beams");
+  CLI::App* command =
+      program.add_subcommand("mosaic", "Combine images of several pointings into one, weighted by their primary beams");
   const auto o = std::make_shared<MosaicOptions>();
   declare(*command, *o);
   check_before_missing(*command, [o] { check(*o); });

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/base/option_checks.h"
@@ -51,24 +52,75 @@ std::string unexpected(const std::vector<std::string>& words) {
   return CLI::ExtrasError(options).what();
 }
 
+/// "a, b or c".
+std::string either(const std::vector<std::string>& words) {
+  std::string list;
+  for (std::size_t i = 0; i < words.size(); ++i) list += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+  return list;
+}
+
+/// The values that an option takes, in words, for a message on `value`, which is none.
+std::string wanted(const CLI::Option& option, const std::string& value) {
+  if (option.get_items_expected_max() == 0) return "true or false";
+  const bool several = option.get_items_expected_max() > 1;
+  const std::string type = option.get_type_name(), whole = several ? "whole numbers" : "a whole number";
+  if (type.find("FLOAT") != std::string::npos) return several ? "numbers" : "a number";
+  if (type.find("UINT") != std::string::npos)
+    return whole + " from 0 to " + std::to_string(std::numeric_limits<unsigned>::max());
+  const bool too_large = !value.empty() && value.find_first_not_of("+-0123456789,") == std::string::npos;
+  return whole + (too_large ? " of magnitude " + std::to_string(std::numeric_limits<int>::max()) + " at most" : "");
+}
+
+/// The first sentence of an option's help, which names its quantity and unit: " (Memory that the run may take, in GiB; …)".
+std::string in_brackets(const std::string& help) {
+  return help.empty() ? "" : " (" + help.substr(0, help.find(". ")) + ")";
+}
+
 /// The parser's message on a value that is no number, "Could not convert: --option = value", with what was expected.
-std::string conversion_message(const std::string& said, const CLI::App& program) {
+std::string conversion_message(const std::string& said, const CLI::App& command) {
   const std::string before = "Could not convert: ";
   const std::size_t equals = said.find(" = ");
   if (said.rfind(before, 0) != 0 || equals == std::string::npos) return said;
-  const std::string name = said.substr(before.size(), equals - before.size());
-  const CLI::Option* option = called(program).get_option_no_throw(name);
+  const std::string name = said.substr(before.size(), equals - before.size()), value = said.substr(equals + 3);
+  const CLI::Option* option = command.get_option_no_throw(name);
   if (option == nullptr) return said;
-  const std::string value = said.substr(equals + 3);
-  const bool fraction = option->get_type_name().find("FLOAT") != std::string::npos;
-  const bool too_large = !fraction && value.find_first_not_of("+-0123456789") == std::string::npos;
-  return name + ' ' + value + ": expected a " + (fraction ? "number" : "whole number") +
-         (too_large ? " of magnitude " + std::to_string(std::numeric_limits<int>::max()) + " at most" : "");
+  return name + ' ' + (value.empty() ? "''" : value) + ": expected " + wanted(*option, value) +
+         in_brackets(option->get_description());
+}
+
+/// The parser's message on a word that is not among those an option takes, "--option: word not in {a,b}", with what was
+/// expected.
+std::string choice_message(const std::string& said) {
+  const std::string between = " not in {";
+  const std::size_t colon = said.find(": "), list = said.rfind(between);
+  if (colon == std::string::npos || list == std::string::npos || list < colon + 2 || said.back() != '}') return said;
+  const std::string value = said.substr(colon + 2, list - colon - 2);
+  const std::string names = said.substr(list + between.size(), said.size() - 1 - list - between.size());
+  std::vector<std::string> words;
+  for (const std::string_view word : split_at_commas(names)) words.emplace_back(word);
+  return said.substr(0, colon) + ' ' + (value.empty() ? "''" : value) + ": expected " + either(words);
+}
+
+/// The parser's message on too few or too many values, "--option: At Most 2 required but received 3", with what was expected.
+std::string count_message(const std::string& said, const CLI::App& command) {
+  const std::string name = said.substr(0, said.find(": ")), before = "but received ";
+  const CLI::Option* option = command.get_option_no_throw(name);
+  if (option == nullptr) return said;
+  const int least = option->get_items_expected_min(), most = option->get_items_expected_max();
+  const std::string number =
+      std::to_string(least) + (most == least                                   ? ""
+                               : most >= CLI::detail::expected_max_vector_size ? " or more"
+                                                                               : " to " + std::to_string(most));
+  const std::size_t received = said.find(before);
+  return name + ": expected " + number + (most == 1 ? " value" : " values") + ", found " +
+         (received == std::string::npos ? (least == 1 ? "none" : "fewer") : said.substr(received + before.size()));
 }
 
 std::string in_words(const CLI::ParseError& error, const CLI::App& program) {
-  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) return conversion_message(error.what(), program);
   const CLI::App& command = called(program);
+  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) return conversion_message(error.what(), command);
+  if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) return choice_message(error.what());
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) return count_message(error.what(), command);
   const bool missing = error.get_name() == "RequiredError";
   std::vector<std::string> names;
   for (const CLI::App* each : command.get_subcommands({})) names.push_back(each->get_name());
@@ -82,8 +134,7 @@ std::string in_words(const CLI::ParseError& error, const CLI::App& program) {
   std::string said = &command == &program ? word : command.get_name() + (word.empty() ? "" : " ") + word;
   said += said.empty() ? "expected " : ": expected ";
   if (!word.empty()) names = nearest_first(word, names);
-  for (std::size_t i = 0; i < names.size(); ++i) said += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
-  return said;
+  return said + either(names);
 }
 
 }  // namespace

@@ -35,11 +35,11 @@ void write(const ReportOptions& o, const MakeReport& make) {
 CLI::App* add_report(CLI::App& reports, const std::string& name, const std::string& description, const MakeReport& make) {
   CLI::App* command = reports.add_subcommand(name, description);
   const auto o = std::make_shared<ReportOptions>();
-  command->add_option("--output", o->output, "Folder for index.html, SVG, CSV and report.json; made where there is none")
+  command->add_option("--output", o->output, "Folder for index.html, SVG, CSV and report.json; created if it does not exist")
       ->required()
       ->type_name(folder_type)
       ->check(not_empty());
-  command->add_flag("--quiet", o->quiet, "Print nothing");
+  command->add_flag("--quiet", o->quiet, "Print nothing but errors");
   command->callback([o, make] { write(*o, make); });
   return command;
 }
@@ -47,19 +47,22 @@ CLI::App* add_report(CLI::App& reports, const std::string& name, const std::stri
 void add_kernel_report(CLI::App& reports) {
   const auto paper = std::make_shared<bool>(false);
   CLI::App* command =
-      add_report(reports, "kernels", "Gridding functions: the figures of Ye et al. 2020 from our own numbers, and rivals",
+      add_report(reports, "kernels",
+                 "Gridding functions: the figures of Ye et al. 2020 with our own numbers, and other functions beside them",
                  [paper](ProgressLine& progress) { return kernel_report(progress, *paper); });
   command->add_flag("--paper", *paper,
-                    "Add the paper's experiments made again: images and visibilities by gridding against direct sums");
+                    "Repeat the paper's experiments too: compare gridded images and visibilities with direct sums");
 }
 
 void add_stability_report(CLI::App& reports) {
   const auto o = std::make_shared<StabilityOptions>();
-  CLI::App* command = add_report(reports, "stability", "What rounding does to kernels, gridding, sums and whole runs",
+  CLI::App* command = add_report(reports, "stability", "Effect of rounding on kernels, gridding, sums and whole runs",
                                  [o](ProgressLine& progress) { return stability_report(*o, progress); });
-  command->add_option("--vis", o->vis, "MeasurementSet whose uv coverage and weights the runs begin with; else one is made")
+  command
+      ->add_option("--vis", o->vis,
+                   "MeasurementSet whose uv coverage and weights the runs start from; when empty, one is simulated")
       ->type_name(folder_type);
-  command->add_flag("--quick", o->quick, "Fewer samples: done within a minute or so");
+  command->add_flag("--quick", o->quick, "Take fewer samples; the report is done within a minute or so");
 }
 
 }  // namespace

@@ -209,44 +209,52 @@ void add_simulate_command(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("simulate", "Write a MeasurementSet with exact visibilities of points and Gaussians");
   const auto o = std::make_shared<SimulateOptions>();
-  command->add_option("--output", o->output, "MeasurementSet to make")->required()->type_name(path_type)->check(not_empty());
-  command
-      ->add_option("--sky", o->sky,
-                   "testcard: the 34 sources of Ye et al. 2020; or a CSV file as `misfit predict --components` takes")
-      ->type_name(name_or_file_type)
-      ->check(values_are({"testcard"}, Others::possible));
-  command->add_option("--array", o->array, "The VLA in its A, B, C or D configuration")
-      ->check(values_are({"vla-a", "vla-b", "vla-c", "vla-d"}));
-  CLI::Option* coplanar = command->add_flag("--coplanar", o->coplanar, "Set w to 0 (the default with the test card)");
-  command->add_flag("--noncoplanar", o->noncoplanar, "Keep w (the default otherwise)")->excludes(coplanar);
-  command->add_flag(
-      "--primary-beam", o->primary_beam,
-      "Let the dishes attenuate the sources by their primary beam around where they point, at the frequency of each channel; "
-      "Gaussians as at their middle");
-  command->add_option("--beam", o->beam, "The primary beam of --primary-beam in place of the telescope's, as of `misfit image`")
-      ->type_name(name_or_file_type);
-  command->add_option("--telescope", o->telescope, "The telescope that the set names in place of EVLA, such as ALMA");
-  command->add_option("--dishes", o->dishes, "Diameters in metres, of the antennas by turns: 12,7; 25 when not given")
-      ->delimiter(',');
+  command->add_option("--output", o->output, "MeasurementSet to write")->required()->type_name(path_type)->check(not_empty());
   command
       ->add_option(
-          "--pointings", o->pointings,
-          "hex,N,SPACING: the N nearest pointings of a hexagonal lattice about --ra and --dec, SPACING apart; or a CSV "
-          "file of ra_deg,dec_deg. Each is a field, and they are visited by turns, an integration each, once at least")
+          "--sky", o->sky,
+          "testcard: the 34 sources of Ye et al. 2020; or a CSV file of sources, as for --components of misfit predict")
+      ->type_name(name_or_file_type)
+      ->check(values_are({"testcard"}, Others::possible));
+  command->add_option("--array", o->array, "Antennas: the VLA in its A, B, C or D configuration")
+      ->check(values_are({"vla-a", "vla-b", "vla-c", "vla-d"}));
+  CLI::Option* coplanar =
+      command->add_flag("--coplanar", o->coplanar, "Set w to 0; the default with --sky testcard, unless there are --pointings");
+  command->add_flag("--noncoplanar", o->noncoplanar, "Keep w; the default with --pointings and with other skies")
+      ->excludes(coplanar);
+  command->add_flag("--primary-beam", o->primary_beam,
+                    "Multiply the sources by the dishes' primary beam about their pointing, at each channel's frequency; "
+                    "Gaussians are multiplied by the beam at their middle");
+  command
+      ->add_option("--beam", o->beam,
+                   "Primary beam that --primary-beam uses instead of the telescope's; values as for --beam of misfit image")
       ->type_name(name_or_file_type);
-  command->add_option("--cell", o->cell, "The test card's cell")->check(quantity(parse_angle_rad));
+  command->add_option("--telescope", o->telescope, "Name of the telescope in the set instead of EVLA, such as ALMA");
+  command
+      ->add_option("--dishes", o->dishes,
+                   "Diameters of the antennas in metres, repeated in this order: 12,7 makes antennas of 12, 7, 12, 7, … m; 25 "
+                   "when empty")
+      ->delimiter(',');
+  command
+      ->add_option("--pointings", o->pointings,
+                   "Fields to observe: hex,N,SPACING, the N points of a hexagonal lattice nearest to --ra and --dec, SPACING "
+                   "apart; or a CSV file of ra_deg,dec_deg. Integrations visit the fields in turn, each field at least once")
+      ->type_name(name_or_file_type);
+  command->add_option("--cell", o->cell, "Cell size of the test card")->check(quantity(parse_angle_rad));
   command->add_option("--ra", o->ra, "Right ascension of the phase centre, J2000")->check(quantity(parse_angle_rad));
-  command->add_option("--dec", o->dec, "Its declination")->check(quantity(parse_angle_rad));
-  command->add_option("--hours", o->hours, "Length of the track around transit; 0 is a snapshot");
+  command->add_option("--dec", o->dec, "Declination of the phase centre, J2000")->check(quantity(parse_angle_rad));
+  command->add_option("--hours", o->hours, "Length of the track around transit, in hours; 0 means a snapshot");
   command->add_option("--interval", o->interval, "Integration time in seconds");
   command->add_option("--frequency", o->frequency, "Frequency of the first channel")->check(quantity(parse_frequency_hz));
   command->add_option("--channels", o->channels, "Number of channels");
   command->add_option("--channel-width", o->channel_width, "Channel spacing")->check(quantity(parse_frequency_hz));
-  command->add_option("--noise", o->noise, "Noise of each correlation's real and imaginary part")
+  command
+      ->add_option("--noise", o->noise,
+                   "Standard deviation of the noise in the real and in the imaginary part of each correlation")
       ->check(quantity(parse_flux_jy));
   command->add_option("--seed", o->seed, "Seed of the noise");
   command->add_option("--threads", o->threads, "Threads; 0 means all cores");
-  command->add_flag("--quiet", o->quiet, "Print nothing");
+  command->add_flag("--quiet", o->quiet, "Print nothing but errors");
   check_before_missing(*command, [o] { check(*o); });
   command->callback([o] { simulate(*o); });
 }

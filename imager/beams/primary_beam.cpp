@@ -123,7 +123,7 @@ Image corrected(const Image& image, const Image& beam) {
   if (image.width != beam.width || image.height != beam.height)
     throw std::invalid_argument("image of " + std::to_string(image.width) + " × " + std::to_string(image.height) +
                                 " pixels with a primary beam of " + std::to_string(beam.width) + " × " +
-                                std::to_string(beam.height));
+                                std::to_string(beam.height) + "; expected one size");
   Image quotient = image;
   for (std::size_t i = 0; i < quotient.pixel.size(); ++i) quotient.pixel[i] /= beam.pixel[i];
   return quotient;

@@ -11,7 +11,7 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& what, double value) {
   throw std::runtime_error(what + " is " + std::to_string(value) +
-                           ", expected a finite number: the data or the model are too large");
+                           "; expected a finite number: visibilities, weights or the model have values too large to be added");
 }
 
 }  // namespace

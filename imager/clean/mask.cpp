@@ -36,7 +36,8 @@ double largest_magnitude_within(const Image& mask, const Image& image, int threa
 Image masked(Image image, const Image& mask) {
   if (mask.width != image.width || mask.height != image.height)
     throw std::invalid_argument("a mask of " + std::to_string(mask.width) + " × " + std::to_string(mask.height) +
-                                " pixels on an image of " + std::to_string(image.width) + " × " + std::to_string(image.height));
+                                " pixels on an image of " + std::to_string(image.width) + " × " + std::to_string(image.height) +
+                                "; expected one size");
   for (std::size_t i = 0; i < mask.pixel.size(); ++i)
     if (!mask_allows(mask.pixel[i])) image.pixel[i] = std::numeric_limits<double>::quiet_NaN();
   return image;

@@ -64,8 +64,8 @@ class CoplanarSharedTransform : public SharedTransform {
  private:
   static void check(std::size_t images) {
     if (images == 0 || images > most_shared_images)
-      throw std::invalid_argument(std::to_string(images) + " images that share samples not in [1, " +
-                                  std::to_string(most_shared_images) + "]");
+      throw std::invalid_argument(std::to_string(images) + " images that share samples; expected 1 to " +
+                                  std::to_string(most_shared_images));
   }
 
   CoplanarSetup<Real> setup_;

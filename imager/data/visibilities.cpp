@@ -14,8 +14,7 @@ std::string nothing_usable(const SampleCounts& c) {
                                       {c.zero_weight, "of zero weight"},
                                       {c.outside_grid, "beyond 1/(2 cell)"}})
     if (count > 0) reasons += (reasons.empty() ? "" : ", ") + std::to_string(count) + " " + reason;
-  return "no visibility is left of " + std::to_string(c.samples_read) + ": " + reasons +
-         "; expected one at least that is none of this";
+  return "none of " + std::to_string(c.samples_read) + " visibilities can be used: " + reasons + "; expected at least one";
 }
 
 }  // namespace

@@ -118,7 +118,8 @@ void refuse_parameters(const FitsFile& file, bool slanted) {
 std::array<double, 2> read_slant(const FitsFile& file, const std::string& projection, double dec_rad) {
   if (projection == "SIN") return {file.number("PV2_1").value_or(0), file.number("PV2_2").value_or(0)};
   if (projection != "NCP") return {};
-  if (!(std::abs(std::tan(dec_rad)) > 1e-6)) file.fail("its projection is NCP on the equator, where it has none");
+  if (!(std::abs(std::tan(dec_rad)) > 1e-6))
+    file.fail("its projection is NCP on the equator, where NCP maps nothing; expected another projection");
   return {0, 1 / std::tan(dec_rad)};
 }
 

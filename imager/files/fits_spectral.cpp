@@ -66,7 +66,8 @@ class Spectral {
     axis_.reference_value *= unit;
     axis_.increment *= unit;
     const bool rest_counts = quantity_ != Quantity::frequency && quantity_ != Quantity::wavelength;
-    if (rest_counts && !(rest_hz > 0)) file.fail("its " + axis_.type + " axis has no RESTFRQ, of which line it is a velocity");
+    if (rest_counts && !(rest_hz > 0))
+      file.fail("its " + axis_.type + " axis has no RESTFRQ; expected the rest frequency of the line whose velocity it is");
   }
 
   void set(SpectralAxis& spectral) const {

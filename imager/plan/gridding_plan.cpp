@@ -106,25 +106,27 @@ Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan) {
 void check_request(const GriddingRequest& request) {
   const kernels::KernelFamily& family = request.kernel;
   if (request.kernel_width != 0 && (request.kernel_width < family.min_width || request.kernel_width > family.max_width))
-    throw std::invalid_argument("kernel width " + std::to_string(request.kernel_width) + " not in [" +
-                                std::to_string(family.min_width) + ", " + std::to_string(family.max_width) +
-                                "], which kernel " + family.name + " offers");
+    throw std::invalid_argument("--kernel-width " + std::to_string(request.kernel_width) + ": expected " +
+                                std::to_string(family.min_width) +
+                                (family.max_width == family.min_width ? "" : " to " + std::to_string(family.max_width)) +
+                                ", which kernel " + family.name + " has");
   if (request.padding != 0 && !(request.padding >= 1.02 && request.padding <= 10))
-    throw std::invalid_argument("padding " + text("%g", request.padding) + " not in [1.02, 10]");
+    throw std::invalid_argument("--padding " + text("%g", request.padding) + ": expected 1.02 to 10");
   if (!(request.least_padding >= 1.02 && request.least_padding <= request.most_padding && request.most_padding <= 10))
-    throw std::invalid_argument("padding from " + text("%g", request.least_padding) + " to " +
-                                text("%g", request.most_padding) + " not in [1.02, 10], in ascending order");
+    throw std::invalid_argument("paddings from " + text("%g", request.least_padding) + " to " +
+                                text("%g", request.most_padding) + ": expected 1.02 to 10, in ascending order");
   constexpr double typed = 1e-3;  // what a padding of four digits may be off by
   if (request.padding != 0 && request.padding < (1 - typed) * 0.5 / family.max_x0)
-    throw std::invalid_argument("padding " + text("%g", request.padding) + " is less than " +
-                                text("%.4g", 0.5 / family.max_x0) + ", which kernel " + family.name +
-                                " needs, made for x0 up to " + text("%.4g", family.max_x0));
+    throw std::invalid_argument("--padding " + text("%g", request.padding) + ": expected at least " +
+                                text("%.4g", 0.5 / family.max_x0) + ", since kernel " + family.name + " is made for x0 up to " +
+                                text("%.4g", family.max_x0));
   if (!(request.max_abs_w >= 0 && std::isfinite(request.max_abs_w)))
     throw std::invalid_argument("largest |w| is " + text("%g", request.max_abs_w) + " wavelengths, expected 0 or more");
   if (!(request.accuracy >= 0 && request.accuracy < 1))
-    throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " not in (0, 1)");
+    throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + ": expected a number above 0 and below 1");
   if (!(request.psf_accuracy >= 0 && request.psf_accuracy < 1))
-    throw std::invalid_argument("accuracy of the PSF " + text("%g", request.psf_accuracy) + " not in (0, 1)");
+    throw std::invalid_argument("accuracy of the PSF " + text("%g", request.psf_accuracy) +
+                                ": expected a number above 0 and below 1");
 }
 
 GriddingPlan with_threads(GriddingPlan plan, int threads) {

@@ -23,7 +23,8 @@ std::vector<std::vector<std::complex<double>>> residuals(const Prediction& predi
 
 void require_any(const SampleSums& sums) {
   if (sums.weight != 0) return;
-  if (sums.outside_grid == 0) throw std::runtime_error("no visibility can be imaged: none has a weight above 0");
+  if (sums.outside_grid == 0)
+    throw std::runtime_error("no visibility can be imaged: all weights are 0; expected at least one above 0");
   throw NothingInGrid(sums.outside_grid);
 }
 
@@ -44,8 +45,8 @@ DirtyImages dirty_images(const Transform& transform, AdjointResult sum, Image ps
 }  // namespace
 
 NothingInGrid::NothingInGrid(std::uint64_t samples)
-    : std::runtime_error("no visibility can be imaged: " + std::to_string(samples) +
-                         " usable samples lie beyond 1/(2 cell), none within; expected smaller pixels"),
+    : std::runtime_error("no visibility can be imaged: all " + std::to_string(samples) +
+                         " usable samples lie beyond 1/(2 cell) in the uv plane; expected smaller pixels"),
       outside_grid(samples) {}
 
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const AdjointOptions& options,

@@ -70,7 +70,7 @@ BOOST_AUTO_TEST_CASE(a_lock_file_of_impossible_numbers_is_named) {
       std::ofstream(lock, std::ios::binary) << damaged;
       const Outcome outcome = run(small_image(set, folder / "a"));
       BOOST_TEST(outcome.code == 1);
-      BOOST_TEST(outcome.err.rfind("misfit: cannot read " + lock + ": it tells of", 0) == 0U, outcome.err);
+      BOOST_TEST(outcome.err.rfind("misfit: cannot read " + lock + ": it states", 0) == 0U, outcome.err);
     }
   std::ofstream(lock, std::ios::binary) << whole.substr(0, 100);  // a short one is a new one
   succeed(small_image(set, folder / "a"));

@@ -134,9 +134,9 @@ BOOST_AUTO_TEST_CASE(what_no_family_offers_is_a_bad_argument_with_what_is_offere
   BOOST_TEST(refused(std::string(5000, 'x').c_str(), 7, 0.25, {"\"xxx"}));
   BOOST_TEST(std::string(misfit_kernel_last_error()).size() == 1023U);
   for (const int width : {0, -1, 21, INT_MAX, INT_MIN})
-    BOOST_TEST(refused("least-misfit", width, 0.25, {"width " + std::to_string(width) + " not in [1, 20]"}));
+    BOOST_TEST(refused("least-misfit", width, 0.25, {"width " + std::to_string(width) + ", expected 1 to 20"}));
   for (const double x0 : {0.0, -0.25, 0.5, not_a_number, HUGE_VAL, -HUGE_VAL})
-    BOOST_TEST(refused("least-misfit", 7, x0, {"x0 = ", " not in [0.01, 0.49]"}));
+    BOOST_TEST(refused("least-misfit", 7, x0, {"x0 = ", ", expected 0.01 to 0.49"}));
 }
 
 BOOST_AUTO_TEST_CASE(a_null_pointer_is_a_bad_argument_and_is_named) {

@@ -104,7 +104,7 @@ class Clean(unittest.TestCase):
             self.assertIn(message, str(raised.exception))
         with self.assertRaisesRegex(TypeError, "clean_mask is 'circle.*', expected an array.*misfit image --mask"):
             cleaned(clean_mask="circle [[50pix, 50pix], 5pix]")
-        with self.assertRaisesRegex(RuntimeError, "no visibility"):
+        with self.assertRaisesRegex(RuntimeError, "visibilit.*expected at least one"):
             cleaned(mask=np.zeros((1500, 2), np.uint8))
 
 

@@ -171,11 +171,11 @@ class Errors(unittest.TestCase):
 
     def test_what_a_family_does_not_have_is_named(self):
         for arguments, message in [
-            ({"width": 21}, r"width 21 not in \[1, 20\]"),
-            ({"width": 0}, r"width 0 not in \[1, 20\]"),
-            ({"name": "spheroidal", "width": 9}, r"width 9 not in \[4, 8\]"),
-            ({"x0": 0.5}, r"x0 = 0.5 not in \[0.01, 0.49\]"),
-            ({"x0": float("nan")}, r"x0 = nan not in"),
+            ({"width": 21}, "width 21, expected 1 to 20"),
+            ({"width": 0}, "width 0, expected 1 to 20"),
+            ({"name": "spheroidal", "width": 9}, "width 9, expected 4 to 8"),
+            ({"x0": 0.5}, "x0 = 0.5, expected 0.01 to 0.49"),
+            ({"x0": float("nan")}, "x0 = nan, expected"),
             ({"name": "spheroidal-exact-11"}, "spheroidal-exact-11"),
         ]:
             with self.assertRaisesRegex(ValueError, message):

@@ -214,6 +214,7 @@ except KeyboardInterrupt:
         self.assertEqual(again["column"], "CORRECTED_DATA")
         seen = misfit.predict(self.sets[0], model=self.name("model.model"), column="SEEN", apply_beam=True, beam="airy:25")
         self.assertEqual(seen["column"], "SEEN")
+        self.assertIn("'SEEN'", str(self.tclean("seen", datacolumn="SEEN", dryrun=True)["plan"]))
         with self.assertRaisesRegex(ValueError, "beam requires apply_beam"):
             misfit.predict(self.sets[0], model=self.name("model.model"), beam="airy:25")
         with self.assertRaisesRegex(ValueError, "expected either model or components"):
@@ -390,7 +391,7 @@ class GoingOn(Sets):
                                 (dict(weighting="briggs", spw="0:0~2"), "taken.residual is .* where these samples give"),
                                 (dict(weighting="briggs", cell="0.21arcsec"), "taken.psf has other pixels"),
                                 (dict(weighting="briggs", imsize=32), "taken.psf has 64 × 64 pixels"),
-                                (dict(weighting="briggs", robust=0.4999), "taken.sumwt is .*, where these samples weigh")):
+                                (dict(weighting="briggs", robust=0.4999), "taken.sumwt is .*, but the weights of")):
             message = self.refusal(RuntimeError, **{**dict(imagename=self.name("taken"), calcpsf=False, calcres=False), **change})
             self.assertRegex(message, refused)
 
@@ -493,7 +494,7 @@ class Refused(Sets):
                            dict(psfphasecenter=[1], gridder="mosaic"), dict(psfphasecenter=True, gridder="mosaic"),
                            dict(deconvolver="mem"), dict(pbmask=0.1, niter=1), dict(niter=-1),
                            dict(cell=["1arcsec", "2arcsec"]), dict(imsize=[64.5]), dict(gain=2, niter=1),
-                           dict(datacolumn="residual"), dict(savemodel="virtual"), dict(deconvolver="mtmfs", nterms=1), dict(imagename="a\nb"), dict(calcpsf="False"),
+                           dict(datacolumn=""), dict(datacolumn=None), dict(savemodel="virtual"), dict(deconvolver="mtmfs", nterms=1), dict(imagename="a\nb"), dict(calcpsf="False"),
                            dict(specmode=5), dict(gridder=[]), dict(vis=5), dict(vis=b"x"), dict(nterms=None, deconvolver="mtmfs"),
                            dict(imagename="x\udcff"), dict(restart=False, calcres=False), dict(imsize="6\n4"),
                            dict(savemodel="modelcolumn"), dict(reffreq="1GHz"),
@@ -511,7 +512,8 @@ class Refused(Sets):
 
     def test_data_that_cannot_be_used_are_named(self):
         self.assertEqual(self.refusal(RuntimeError, vis="nosuch.ms"), "nosuch.ms does not exist; expected a MeasurementSet")
-        self.assertIn("spw '7' selects nothing", self.refusal(RuntimeError, spw="7"))
+        self.assertIn("spw '7': the set has no such spectral window; expected some of 0 (", self.refusal(RuntimeError, spw="7"))
+        self.assertIn("has no visibilities in a column 'residual'", self.refusal(RuntimeError, datacolumn="residual"))
 
 
 class Pointings(Sets):

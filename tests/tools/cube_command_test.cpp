@@ -169,7 +169,7 @@ BOOST_AUTO_TEST_CASE(a_cube_without_data_is_refused) {
   const LineSet data("TOPO");
   const Outcome outcome = run(cube(data.set, data.folder / "a") + Arguments{"--start", "1.5GHz", "--nchan", "4"});
   BOOST_TEST(outcome.code == 2);
-  BOOST_TEST(outcome.err.find("hold no data; expected some within 1.42") != std::string::npos);
+  BOOST_TEST(outcome.err.find("hold no data; expected planes within 1.42") != std::string::npos);
   BOOST_TEST(!std::filesystem::exists(data.folder / "a.residual.fits"));
 }
 

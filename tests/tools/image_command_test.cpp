@@ -1,4 +1,6 @@
 // From a MeasurementSet to the files of an image.
+#include "imager/data/image_statistics.h"
+#include "tests/tools/markup.h"
 #include "tests/tools/program.h"
 #include "tests/tools/set_changes.h"
 #include "tools/base/files.h"
@@ -315,8 +317,44 @@ BOOST_AUTO_TEST_CASE(a_cell_without_a_unit_is_said_to_be_in_arcsec) {
   BOOST_TEST(outcome.out.find("pixels: 64 × 64 of 100 mas; --cell 0.1 has no unit, and is in arcsec") != std::string::npos);
   BOOST_TEST(outcome.err.find("--cell 0.1 has no unit, and is in arcsec as in tclean\n") != std::string::npos);
   const Outcome told = run(small_image(snapshot(), folder / "b") + Arguments{"--dry-run"});
-  BOOST_TEST(told.out.find("pixels: 64 × 64 of 100 mas; --cell 0.1arcsec\n") != std::string::npos);
+  BOOST_TEST(told.out.find("pixels: 64 × 64 of 100 mas; --cell 0.1arcsec; ") != std::string::npos);
   BOOST_TEST(told.err == "");
+}
+
+BOOST_AUTO_TEST_CASE(a_plan_tells_what_is_in_the_set) {
+  const TemporaryFolder folder;
+  const std::string plan = run(small_image(track(), folder / "a") + Arguments{"--dry-run"}).out;
+  for (const std::string line : {"telescope: EVLA, 27 antennas; observed ", " UTC, 1 h 00 min\n", "\nfields: 0 '",
+                                 "; 1 of 1 in the set\n", "\nspectral windows: 0 (", "\nbaselines: ", " km; ",
+                                 "; CORRECTED_DATA where a set has it, else DATA; the set has DATA\n"})
+    BOOST_TEST(plan.find(line) != std::string::npos, line << " in " << plan);
+  const Arguments both{"image",      "--vis",    track(), snapshot(), "--imagename",
+                       folder / "a", "--imsize", "64",    "--cell",   "0.1arcsec"};
+  const Outcome two = run(both + Arguments{"--dry-run"});
+  for (const std::string& set : {track(), snapshot()})
+    BOOST_TEST(two.out.find("set " + set + ": EVLA, 27 antennas, observed ") != std::string::npos, two.out);
+}
+
+BOOST_AUTO_TEST_CASE(pixels_that_are_too_large_are_answered_with_those_that_are_not) {
+  const TemporaryFolder folder;
+  const auto image = [&](const std::string& cell) {
+    return Arguments{"image", "--vis", snapshot(), "--imagename", folder / "a", "--imsize", "64", "--cell", cell};
+  };
+  const auto cell_named = [](const std::string& text) {
+    const std::size_t end = text.find(" would keep them"), begin = text.rfind(' ', end - 1) + 1;
+    return end == std::string::npos ? "" : text.substr(begin, end - begin);
+  };
+  const Outcome refused = run(image("2deg"));  // beyond 14 λ
+  BOOST_TEST(refused.code == 1);
+  BOOST_TEST(refused.err.find("expected smaller pixels: a cell of ") != std::string::npos, refused.err);
+  const std::string cell = cell_named(refused.err);
+  const Outcome some = run(image("5arcsec"));
+  BOOST_TEST(cell_named(some.err) == cell);
+  const Outcome forecast = run(image("5arcsec") + Arguments{"--dry-run"});
+  BOOST_TEST(forecast.err.find("beyond 1/(2 cell) and would be left out; a cell of " + cell) != std::string::npos);
+  BOOST_TEST(run(image(cell) + Arguments{"--dry-run"}).err == "");
+  BOOST_TEST(run(image(cell)).err.find("beyond") == std::string::npos);
+  BOOST_TEST(report_of(folder / "a")["visibilities"]["outside_grid"] == 0);
 }
 
 BOOST_AUTO_TEST_CASE(a_dry_run_reads_neither_data_nor_flags) {
@@ -457,7 +495,7 @@ BOOST_AUTO_TEST_CASE(clean_goes_on_with_another_mask_depth_and_deconvolver) {
   // A model of another scale cannot go on as points.
   const Outcome points = run(small_image(snapshot(), folder / "a") + Arguments{"--niter", "200", "--restart"});
   BOOST_TEST(points.code == 1);
-  BOOST_TEST(contains(points.err, "a.clean.state has components of scale 5: expected that among --scales"));
+  BOOST_TEST(contains(points.err, "a.clean.state has components of scale 5: expected this scale among --scales"));
 }
 
 BOOST_AUTO_TEST_CASE(a_start_model_is_where_an_earlier_run_ended) {
@@ -512,6 +550,33 @@ BOOST_AUTO_TEST_CASE(the_model_column_holds_what_the_model_image_predicts) {
   BOOST_TEST(error <= 1e-14 * norm);  // 32-bit numbers
   succeed(small_image(set, folder / "a") +
           Arguments{"--niter", "5", "--savemodel", "modelcolumn", "--kernel-width", "7", "--padding", "1.5"});
+}
+
+BOOST_AUTO_TEST_CASE(a_model_saved_for_some_rows_tells_of_the_others) {
+  const TemporaryFolder folder;
+  const std::string set = folder / "copy.ms";
+  std::filesystem::copy(snapshot(), set, std::filesystem::copy_options::recursive);
+  const Arguments save = small_image(set, folder / "a") + Arguments{"--niter", "5", "--savemodel", "modelcolumn"};
+  for (const std::string holds : {"MODEL_DATA is 0 there", "MODEL_DATA keeps there what it held before"}) {
+    const Outcome outcome = run(save + Arguments{"--antenna", "!0"});  // 26 of 27 · 26 / 2 baselines
+    BOOST_TEST(outcome.out.find("model of 325 visibilities in 325 of 351 rows written to MODEL_DATA") != std::string::npos);
+    const std::string sentence = "26 of 351 rows of " + set + " are not selected: " + holds;
+    BOOST_TEST(outcome.err.find("warning: " + sentence) != std::string::npos, outcome.err);
+    const json warnings = report_of(folder / "a")["warnings"];
+    BOOST_TEST(std::count(warnings.begin(), warnings.end(), sentence) == 1);
+  }
+  BOOST_TEST(run(save).err.find("not selected") == std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(a_neglected_w_is_told_of_where_its_phase_exceeds_the_accuracy) {
+  const TemporaryFolder folder;
+  succeed({"simulate", "--output", folder / "w.ms", "--noncoplanar"});
+  const Arguments plan = small_image(folder / "w.ms", folder / "a") + Arguments{"--gridder", "standard", "--dry-run"};
+  const auto told = [](const Outcome& outcome) {
+    return outcome.err.find("of that size; --gridder wide takes w exactly") != std::string::npos;
+  };
+  BOOST_TEST(told(run(plan)));  // 7e-5 rad
+  BOOST_TEST(!told(run(plan + Arguments{"--accuracy", "1e-2"})));
 }
 
 BOOST_AUTO_TEST_CASE(the_mask_given_is_written_and_holds_all_components) {

@@ -72,7 +72,7 @@ BOOST_AUTO_TEST_CASE(masks_that_are_neither_files_nor_regions_are_refused_with_w
                    ": No such file or directory; expected a FITS or CASA image, a region file, or region text "
                    "such as circle [[100pix, 80pix], 20pix]");
   BOOST_TEST(refusal_of(std::string(300, 'x')).find("File name too long; expected") != std::string::npos);
-  BOOST_TEST(refusal_of("circle [[1pix, 2pix]]").find("--mask, line 1: 'circle [[1pix, 2pix]]', expected circle") == 0U);
+  BOOST_TEST(refusal_of("circle [[1pix, 2pix]]").find("--mask, line 1: found 'circle [[1pix, 2pix]]', expected circle") == 0U);
   BOOST_TEST(refusal_of("circle [[1pix, 2pix], 3pix]\nbox [[1pix, 2pix], [3pix, 4pix]]").find("has several lines") !=
              std::string::npos);
 }

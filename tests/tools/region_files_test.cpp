@@ -115,7 +115,7 @@ BOOST_AUTO_TEST_CASE(a_region_is_of_the_correlations_that_it_names) {
 BOOST_AUTO_TEST_CASE(a_file_without_a_region_of_the_image_is_refused) {
   const std::string box = "box [[0pix, 0pix], [1pix, 0pix]]";
   BOOST_TEST(refused(box + ", corr=[Q]",
-                     "line 1: 'corr=[Q]', expected planes of the image, corr of I and range within its 1 channel"));
+                     "line 1: found 'corr=[Q]', expected planes of the image, corr of I and range within its 1 channel"));
   BOOST_TEST(refused(box + ", corr=[XX, YY]", "corr of IQ", header_in("FK5", "IQ")));
   BOOST_TEST(refused(box + ", range=[30chan, 40chan]",
                      "'range=[30chan, 40chan]', expected planes of the image, corr of I and range within its 5 channels",
@@ -134,8 +134,9 @@ BOOST_AUTO_TEST_CASE(regions_without_a_pixel_are_told_of) {
   const auto told = [&](const std::string& sentence) {
     return std::find(read.doubts().begin(), read.doubts().end(), sentence) != read.doubts().end();
   };
-  BOOST_TEST(told("regions, line 2: the region holds the centre of no pixel of the image"));
-  BOOST_TEST(told("regions, line 3: the region holds the centre of no pixel of the image"));
+  const std::string no_pixel = "the region holds the centre of no pixel of the image, 61 × 47 pixels: its own is at column ";
+  BOOST_TEST(told("regions, line 2: " + no_pixel + "300, row 20"));
+  BOOST_TEST(told("regions, line 3: " + no_pixel + "3.5, row 4.5"));
   BOOST_TEST(told("regions, line 4: the region of corr=[Q] is of no plane of the image"));
   BOOST_TEST(told("regions, line 5: a symbol holds no pixel and is passed over"));
   BOOST_TEST(RegionText("regions", "circle [[30pix, 20pix], 7pix]", header_in()).doubts().empty());

@@ -29,8 +29,8 @@ bool refused(const std::string& regions, const std::string& part) {
 
 BOOST_AUTO_TEST_CASE(what_casa_region_text_cannot_mean_is_refused) {
   const std::string box = "box [[0pix, 0pix], [1pix, 0pix]]";
-  BOOST_TEST(refused("#CRTFv1\n" + box, "line 1: '#CRTFv1', expected version 0"));
-  BOOST_TEST(refused("#CRTF\nblob [[1pix, 2pix]]", "line 2: 'blob [[1pix, 2pix]]', expected one of box"));
+  BOOST_TEST(refused("#CRTFv1\n" + box, "line 1: found '#CRTFv1', expected version 0"));
+  BOOST_TEST(refused("#CRTF\nblob [[1pix, 2pix]]", "line 2: found 'blob [[1pix, 2pix]]', expected one of box"));
   BOOST_TEST(refused("poly [[1pix, 2pix], [3pix, 4pix]]", "expected poly [[x1, y1], [x2, y2], [x3, y3], …]"));
   BOOST_TEST(refused("rotbox [[1pix, 2pix], [3pix, 4pix]]", "expected rotbox [[x, y], [width, height], angle]"));
   BOOST_TEST(refused("rotbox [[1pix, 2pix], [3pix, 4pix], 3pix]", "'3pix', expected an angle"));

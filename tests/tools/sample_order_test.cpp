@@ -115,7 +115,7 @@ BOOST_AUTO_TEST_CASE(windows_beside_the_planes_are_named_and_sets_that_are_not_r
                        "--cell", "20arcsec",    "--specmode", "cube",     "--vis"};
   const Outcome outcome = run(cube + Arguments{low, high});
   BOOST_TEST(outcome.code == 0);
-  BOOST_TEST(outcome.err.find("left out is what lies beside the cube's planes") != std::string::npos, outcome.err);
+  BOOST_TEST(outcome.err.find("data outside the cube's planes") != std::string::npos, outcome.err);
   BOOST_TEST(outcome.err.find("spectral window 0 of " + low) != std::string::npos, outcome.err);
   BOOST_TEST(outcome.err.find("never filled") == std::string::npos, outcome.err);
   const Outcome gap = run(cube + Arguments{low, high, "--start", "1.42GHz", "--nchan", "2"});

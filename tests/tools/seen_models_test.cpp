@@ -130,8 +130,8 @@ BOOST_AUTO_TEST_CASE(pointings_and_beams_that_are_none_are_refused) {
   says(refusal(simulate + Arguments{"--dishes", "12,0"}), "--dishes 0: expected diameters above 0");
   const std::string list = folder / "pointings.csv";
   for (const auto& [text, expected] : {std::pair("", "lists no pointing"),
-                                       {"ra,dec\n", "line 1: 'ra,dec', expected the names"},
-                                       {"ra_deg,dec_deg\n1,2\n1,95\n", "line 3: '1,95', expected a right ascension"},
+                                       {"ra,dec\n", "line 1: found 'ra,dec', expected the names"},
+                                       {"ra_deg,dec_deg\n1,2\n1,95\n", "line 3: found '1,95', expected a right ascension"},
                                        {"ra_deg,dec_deg\n1\n", "line 2: '1'"}}) {
     std::ofstream(list) << text;
     says(refusal(simulate + Arguments{"--pointings", list}), expected);

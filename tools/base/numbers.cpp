@@ -125,6 +125,13 @@ ScaledUnit angle_unit(double angle_rad) {
   return {degree / 3.6e6, "mas"};
 }
 
+ScaledUnit uv_unit(double lambda) {
+  constexpr std::array<std::pair<double, const char*>, 3> units{{{1e9, "Gλ"}, {1e6, "Mλ"}, {1e3, "kλ"}}};
+  for (const auto& [size, name] : units)
+    if (lambda >= size) return {size, name};
+  return {1, "λ"};
+}
+
 std::string with_prefix(double value, const std::string& base, int digits) {
   const ScaledUnit unit = scaled_unit(value, base);
   return significant(value / unit.size, digits) + " " + unit.name;

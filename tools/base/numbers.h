@@ -43,6 +43,9 @@ ScaledUnit scaled_unit(double value, const std::string& base);
 /// An angle's unit for something of size `angle_rad`: mas, arcsec, arcmin or deg; `size` is in radians.
 ScaledUnit angle_unit(double angle_rad);
 
+/// A unit in which a distance in wavelengths is easy to read: λ, kλ, Mλ or Gλ.
+ScaledUnit uv_unit(double lambda);
+
 /// `value` in its scaled_unit(), as "1.2 mJy/beam".
 std::string with_prefix(double value, const std::string& base, int digits);
 

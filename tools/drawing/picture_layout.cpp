@@ -84,9 +84,11 @@ void write_colour_bar(std::ostream& script, const PictureLayout& at, const Colou
     comma = ", ";
   }
   script << ")\n";
-  int tag = 4, below = 24;
+  const int beside_last_mark = left + 10;  // of the x axis, whose number may reach beyond the plot
+  int tag = 4, below = 28;
   for (const std::string& note : bar.notes) {
-    write_label(script, at, {.tag = tag++, .text = note, .from_left = left, .from_top = margin_top + height + below});
+    write_label(script, at,
+                {.tag = tag++, .text = note, .from_left = beside_last_mark, .from_top = margin_top + height + below});
     below += 26;
   }
 }

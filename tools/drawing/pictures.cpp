@@ -87,7 +87,8 @@ std::string PictureDrawing::finish() {
     if (!failure.empty()) return "Pictures are left out: " + failure + ".";
   }
   for (const auto& sheet : sheets_)
-    if (!is_complete(sheet->png)) return "Pictures are left out: gnuplot could not finish them; is the disk full?";
+    if (!is_complete(sheet->png))
+      return "Pictures are left out: gnuplot could not finish them; expected room on the disk of temporary files.";
   for (const auto& sheet : sheets_) write_file(sheet->path, sheet->png);
   return "";
 }

@@ -1,7 +1,6 @@
 #include "tools/drawing/uv_picture.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -65,14 +64,6 @@ void write_shades(const fs::path& path, const imager::Image& counts) {
   std::ofstream file(path, std::ios::binary);
   file.write(reinterpret_cast<const char*>(shades.data()), static_cast<std::streamsize>(shades.size() * sizeof(float)));
   if (!file.flush()) throw std::runtime_error("cannot write pictures in " + path.parent_path().string());
-}
-
-/// The unit in which a distance in wavelengths is easy to read.
-ScaledUnit uv_unit(double lambda) {
-  constexpr std::array<std::pair<double, const char*>, 3> units{{{1e9, "Gλ"}, {1e6, "Mλ"}, {1e3, "kλ"}}};
-  for (const auto& [size, name] : units)
-    if (lambda >= size) return {size, name};
-  return {1, "λ"};
 }
 
 ColourBar colour_bar(const Scene& scene) {

@@ -45,7 +45,7 @@ json packed(const std::vector<T>& values) {
 template <typename T>
 std::vector<T> unpacked(const json& value) {
   const auto& bytes = value.get_binary();
-  if (bytes.size() % sizeof(T) != 0) throw std::invalid_argument("an array is cut");
+  if (bytes.size() % sizeof(T) != 0) throw std::invalid_argument("an array is cut short");
   std::vector<T> values(bytes.size() / sizeof(T));
   if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
   return values;
@@ -202,7 +202,7 @@ imager::ComponentModel with_scales_of(const imager::ComponentModel& like, const 
     const auto found = std::find(like.scale_pixels().begin(), like.scale_pixels().end(), scale);
     if (found == like.scale_pixels().end())
       throw std::runtime_error(path + " has components of scale " + typed(scale / imager::tclean_scale_width) +
-                               ": expected that among --scales; without --restart CLEAN begins anew");
+                               ": expected this scale among --scales; without --restart CLEAN begins anew");
     component.scale = static_cast<int>(found - like.scale_pixels().begin());
   }
   imager::ComponentModel same(like.width(), like.height(), like.scale_pixels());
@@ -287,9 +287,9 @@ json intact_content(std::string_view file) {
 }
 
 void require_same(const std::string& path, const json& file, const CleanStateOwner& owner) {
-  const auto refuse = [&path](const std::string& what, const json& has, const json& expected) {
-    throw std::runtime_error(path + " was saved with " + what + " " + shown(has) + ", expected that of this run, " +
-                             shown(expected) + "; without --restart CLEAN begins anew");
+  const auto refuse = [&path](const std::string& what, const json& has, const json& own) {
+    throw std::runtime_error(path + " was saved with " + what + " " + shown(has) + ", but this run has " + shown(own) +
+                             "; expected " + what + " " + shown(has) + ", or no --restart to begin anew");
   };
   if (file.at("version") != owner.version) refuse("version", file.at("version"), owner.version);
   const json& has = file.at("options");
@@ -349,7 +349,7 @@ ReadCleanState read_clean_state(const std::string& path, const CleanStateOwner& 
   if (!file.is_object() || file.value("format", json()) != format)
     throw std::runtime_error(path + " is damaged or no state of CLEAN; expected what an earlier run of misfit image saved");
   const auto damaged = [&path](const std::exception& error) {
-    throw std::runtime_error(path + " is damaged: " + error.what() + "; without it, run without --restart");
+    throw std::runtime_error(path + " is damaged: " + error.what() + "; without --restart CLEAN begins anew");
   };
   try {
     require_same(path, file, owner);

@@ -56,16 +56,18 @@ class Columns {
     for (const std::string_view name : {equatorial ? "ra_deg" : "l_arcsec", equatorial ? "dec_deg" : "m_arcsec", "flux_jy"})
       if (!has(name)) fail("no column " + quoted(name) + ", " + expected());
     if (equatorial && (has("l_arcsec") || has("m_arcsec"))) fail("positions are given twice, " + expected());
-    if (has("frame") && !equatorial) fail("a frame of no directions, " + expected());
+    if (has("frame") && !equatorial) fail("column 'frame' stands without ra_deg and dec_deg, " + expected());
     if (has("spectral_index") != has("reference_frequency_hz"))
       fail("no column " + quoted(has("spectral_index") ? "reference_frequency_hz" : "spectral_index") +
            ", expected both or neither of spectral_index and reference_frequency_hz");
   }
 
   static std::string expected() {
-    return "expected ra_deg,dec_deg,flux_jy, and frame where it is not that of the phase centre, or "
-           "l_arcsec,m_arcsec,flux_jy, and scale_arcsec if sources are extended, "
-           "spectral_index,reference_frequency_hz if fluxes depend on frequency";
+    return "expected the columns ra_deg,dec_deg,flux_jy, with frame if it is not the phase centre's; or "
+           "l_arcsec,m_arcsec,flux_jy; "
+           "either with scale_arcsec if sources are extended, and with spectral_index,reference_frequency_hz if fluxes depend "
+           "on "
+           "frequency";
   }
   std::size_t count() const { return names_.size(); }
   bool has(std::string_view name) const { return place(name) < names_.size(); }
@@ -88,7 +90,8 @@ class Line {
  public:
   Line(std::string_view text, const Columns& columns) : columns_(columns), fields_(split_at_commas(text)) {
     if (fields_.size() != columns.count())
-      fail(std::to_string(fields_.size()) + " values, expected " + std::to_string(columns.count()));
+      fail("the line has " + std::to_string(fields_.size()) + " values, expected " + std::to_string(columns.count()) +
+           ", one for each column");
   }
 
   /// A number of the line. Throws unless it is finite and from `least` to `most`.
@@ -221,7 +224,7 @@ std::string listed_frame(const std::string& path) {
   std::string frame;
   visit_lines(path, Polarised::yes, [&](const Line& line, const Columns&) {
     const std::string own = line.frame();
-    if (!frame.empty() && own != frame) fail("a frame other than that of the first line, expected one list for each frame");
+    if (!frame.empty() && own != frame) fail("frame is not that of the first source, expected one frame for all of the list");
     frame = own;
   });
   return frame;

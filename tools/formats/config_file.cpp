@@ -50,14 +50,14 @@ std::string in_list(const CLI::Option& option, const std::string& part) {
 /// Sets the option that `line` names, unless it was typed. `taken` are the names met before.
 void take(CLI::App& command, const std::string& line, std::set<std::string>& taken) {
   const std::size_t equals = line.find('=');
-  if (equals == std::string::npos) throw std::invalid_argument("'" + line + "', expected name = value");
+  if (equals == std::string::npos) throw std::invalid_argument("'" + line + "' has no =, expected name = value");
   const std::string name = trimmed(line.substr(0, equals)), value = unquoted(trimmed(line.substr(equals + 1)));
   CLI::Option* option = command.get_option_no_throw("--" + name);
   if (name.empty() || option == nullptr || !option->get_configurable())
     throw std::invalid_argument("'" + name + "' is no option of misfit " + command.get_name());
   if (has(*option, OptionMark::typed_alone))
     throw std::invalid_argument("'" + name + "' names a folder whose programs would be run; expected it on the command line");
-  if (!taken.insert(name).second) throw std::invalid_argument("'" + name + "' stands in the file twice");
+  if (!taken.insert(name).second) throw std::invalid_argument("'" + name + "' stands in the file twice, expected it once");
   if (option->count() > 0) return;
   if (option->get_items_expected_max() == 0) check_flag(name, value);
   if (option->get_items_expected_max() == 1 || (has(*option, OptionMark::one_or_each) && value.substr(0, 1) != "'")) {
@@ -93,7 +93,7 @@ void add_config_option(CLI::App& command) {
   command
       .add_option_function<std::string>(
           "--config", [&command](const std::string& path) { take_all(command, path); },
-          "Read options from a file with lines name = value; those given here win")
+          "Read options from a file of lines name = value; options on the command line take precedence")
       ->type_name(file_type)
       ->configurable(false);
 }

@@ -29,9 +29,9 @@ void check_pixels(const imager::SkyImage& model, const std::string& path) {
       const double value = model.image.at(row, column);
       const bool finite = std::isfinite(value), beyond = imager::beyond_horizon(model.geometry.at(row, column));
       if (!finite && !beyond)
-        throw std::runtime_error(path +
-                                 " has pixels without a finite number, or that its own mask leaves out; a model needs a number "
-                                 "in each pixel above the horizon");
+        throw std::runtime_error(path + " has no finite value in pixel " + std::to_string(column + 1) + ", " +
+                                 std::to_string(row + 1) +
+                                 ", or its own mask leaves that pixel out; expected a number in each pixel above the horizon");
       if (finite && beyond && value != 0)
         throw std::runtime_error(path + " has " + significant(value, 6) + " Jy in pixel " + std::to_string(column + 1) + ", " +
                                  std::to_string(row + 1) +

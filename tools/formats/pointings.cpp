@@ -64,8 +64,8 @@ std::vector<imager::SkyDirection> listed(const std::string& path, const std::str
     ++number;
     if (trimmed(line).empty() || trimmed(line).starts_with('#')) continue;
     const auto fail = [&](const std::string& expected) {
-      throw std::runtime_error(path + ", line " + std::to_string(number) + ": '" + legible(trimmed(line)) + "', expected " +
-                               expected);
+      throw std::runtime_error(path + ", line " + std::to_string(number) + ": found '" + legible(trimmed(line)) +
+                               "', expected " + expected);
     };
     const std::vector<std::string_view> values = split_at_commas(trimmed(line));
     if (!named) {
@@ -81,7 +81,7 @@ std::vector<imager::SkyDirection> listed(const std::string& path, const std::str
     directions.push_back({number_in(0, 360), number_in(1, 90), frame});
   }
   if (directions.empty())
-    throw std::runtime_error(path + " lists no pointing; expected a line ra_deg,dec_deg, and one for each");
+    throw std::runtime_error(path + " lists no pointing; expected a line ra_deg,dec_deg, and a line for each pointing");
   return directions;
 }
 
@@ -101,7 +101,9 @@ std::vector<imager::SkyDirection> pointings(const std::string& text, const image
   for (const imager::DirectionCosines& point : lattice(of_hexagon->pointings)) {
     const imager::DirectionCosines at{point.l * of_hexagon->spacing_rad, point.m * of_hexagon->spacing_rad};
     if (imager::beyond_horizon(at))
-      throw std::invalid_argument("--pointings " + text + ": reaches beyond 90 degrees; expected fewer, or nearer ones");
+      throw std::invalid_argument(
+          "--pointings " + text +
+          " reaches beyond 90 degrees from --ra and --dec; expected fewer pointings, or a smaller SPACING");
     directions.push_back(imager::sky_direction(at, centre));
   }
   return directions;

@@ -76,8 +76,8 @@ void declare_kernel_folder(CLI::App& command, std::string& folder) {
   if (const char* const given = std::getenv("MISFIT_KERNEL_FOLDER")) folder = given;
   mark(mark(command
                 .add_option("--kernel-folder", folder,
-                            "Folder with kernels from outside: --kernel NAME there is libmisfit_kernel_NAME.so; or "
-                            "$MISFIT_KERNEL_FOLDER")
+                            "Folder of kernel libraries: --kernel NAME loads libmisfit_kernel_NAME.so from there; "
+                            "$MISFIT_KERNEL_FOLDER when empty")
                 ->type_name(folder_type),
             OptionMark::free_of_state),
        OptionMark::typed_alone);

@@ -31,40 +31,42 @@ std::vector<double> MosaicOptions::noises_jy() const {
 
 void declare(CLI::App& command, MosaicOptions& o) {
   command
-      .add_option(
-          "images,--images", o.images,
-          "Images of the pointings, FITS or CASA, in Jy/beam and not divided by the primary beam; two or more. They may "
-          "stand without the option's name")
+      .add_option("images,--images", o.images,
+                  "Images of two or more pointings, FITS or CASA, in Jy/beam and not divided by the primary beam. The option's "
+                  "name may be left out")
       ->required()
       ->type_name(file_type);
-  command.add_option("--output", o.output, "The names of the mosaic begin with this: NAME.image, .weight, .noise and .pb")
+  command
+      .add_option("--output", o.output, "The names of the output images begin with this: NAME.image, .weight, .noise and .pb")
       ->required()
       ->type_name(path_type)
       ->check(not_empty());
   command
-      .add_option(
-          "--beam", o.beam,
-          "The primary beam of all images: a telescope's by its name, airy:D, a uniformly lit dish of D metres, airy:D:B with "
-          "a "
-          "dark middle of B metres, or a FITS image or cube of a power pattern, voltage:FILE of a voltage pattern, of which "
-          "the mean over position angles is taken. When empty: that of the image X.pb beside X.image, or else of the "
-          "telescope that the header names, around the header's reference direction, at the header's frequencies")
+      .add_option("--beam", o.beam,
+                  "Primary beam of all images: a telescope's name; airy:D, a uniformly lit dish of D metres; airy:D:B, with a "
+                  "dark middle of B metres; a FITS image or cube of a power pattern; or voltage:FILE, a voltage pattern. Files "
+                  "are averaged over position angles. When empty: the image X.pb beside X.image; or, without it, the beam of "
+                  "the telescope that the header names, about the header's reference direction, at the header's frequencies")
       ->type_name(name_or_file_type);
-  command.add_option(
-      "--pblimit", o.pblimit,
-      "Where the joint beam, the square root of the weight over its largest, is lower, the mosaic has no values");
+  command.add_option("--pblimit", o.pblimit,
+                     "The mosaic has no values where the joint beam is lower than this; the joint beam is the square root of "
+                     "weight over largest weight");
   command.add_option("--rms", o.rms,
-                     "Noise of each image, or one for all, as 20uJy,31uJy. When empty: measured, in X.residual beside X.image, "
-                     "or else in the image itself");
-  command.add_option("--phasecenter", o.phasecenter,
-                     "Direction in the middle of the mosaic, as 'J2000 12h30m49.4s +12d23m28s'. When empty: the middle of the "
-                     "pointings");
-  command.add_option("--imsize", o.imsize, "Width, or width and height, in pixels. When empty: as the beams reach")
+                     "Noise of each image, such as 20uJy,31uJy, or one value for all. When empty: it is measured in X.residual "
+                     "beside X.image, or else in the image itself");
+  command.add_option(
+      "--phasecenter", o.phasecenter,
+      "Direction of the middle of the mosaic, such as 'J2000 12h30m49.4s +12d23m28s'. When empty: the middle of the "
+      "pointings");
+  command
+      .add_option("--imsize", o.imsize,
+                  "Width, or width and height, in pixels. When empty: large enough for all that the beams reach")
       ->expected(1, 2);
-  command.add_option("--cell", o.cell, "Pixel size. When empty: the smallest of the images")->check(quantity(parse_angle_rad));
+  command.add_option("--cell", o.cell, "Pixel size. When empty: the smallest pixel size of the images")
+      ->check(quantity(parse_angle_rad));
   command.add_option("--outformat", o.outformat, "FITS files, CASA images, or both")->check(CLI::IsMember(image_formats()));
   command.add_option("--threads", o.threads, "Threads; 0 means all cores");
-  command.add_flag("--quiet", o.quiet, "Print nothing");
+  command.add_flag("--quiet", o.quiet, "Print nothing but errors");
 }
 
 namespace {

@@ -129,7 +129,7 @@ class MosaicRun {
         progress_.say(
             "warning: " + before->image->path() + " and " + pointing.image->path() + " have one reference direction, " +
             sexagesimal(pointing.image->grid().reference) +
-            ", and count as seen by beams about it; where their antennas pointed elsewhere, expected .pb beside each");
+            ", and their beams are taken to be about it; if antennas pointed elsewhere, put an image .pb beside each");
         return;
       }
       before = &pointing;
@@ -142,9 +142,8 @@ class MosaicRun {
     const double cell_rad = std::max(image.grid().column_step_rad(), image.grid().row_step_rad());
     if (beam && beam->minor_rad < enough * cell_rad)
       progress_.say("warning: the beam of " + image.path() + " is " + significant(beam->minor_rad / cell_rad, 3) +
-                    " pixels wide: between pixels its image is known to a part of " +
-                    power_of_ten(std::erfc(0.4 * M_PI * beam->minor_rad / cell_rad / std::sqrt(4 * std::log(2.0))), 1) +
-                    " only");
+                    " pixels wide: between its pixels the image has an error of about a part of " +
+                    power_of_ten(std::erfc(0.4 * M_PI * beam->minor_rad / cell_rad / std::sqrt(4 * std::log(2.0))), 1));
   }
 
   /// Claims the paths of the products; no file that is read is replaced.
@@ -279,9 +278,9 @@ class MosaicRun {
       throw std::runtime_error("no image reaches the mosaic, " + size_text() + " about " +
                                sexagesimal(header_.geometry.phase_centre) + "; expected another --phasecenter or --imsize");
     if (beams_.empty())
-      throw std::runtime_error("no pixel of the mosaic has a value: noises are from " +
+      throw std::runtime_error("no pixel of the mosaic has a value: the first image has noises from " +
                                with_prefix(tallies_.front().noise.least, "Jy/beam", 3) +
-                               " on; expected some whose squares are numbers");
+                               " on, whose squares are too large or too small for numbers; expected other noises, or --rms");
     for (std::size_t p = 0; p < tallies_.size(); ++p)
       if (tallies_[p].pixels == 0)
         progress_.say(

@@ -13,9 +13,9 @@ namespace {
 std::string cleaned_noise_doubt(const PointingImage& image, double residual_jy, double image_jy) {
   constexpr double much = 1.2;
   if (!(image_jy > much * residual_jy)) return "";
-  return "the noise of " + image.residual_path() + " is " + with_prefix(residual_jy, "Jy/beam", 3) + ", and that of " +
-         image.path() + " " + with_prefix(image_jy, "Jy/beam", 3) +
-         ": CLEAN may have taken noise out of the residual, or sources fill the image; --rms tells which";
+  return image.residual_path() + " has a noise of " + with_prefix(residual_jy, "Jy/beam", 3) + ", and " + image.path() +
+         " has one of " + with_prefix(image_jy, "Jy/beam", 3) +
+         ": CLEAN may have taken noise out of the residual, or sources fill the image; --rms sets the noise to be used";
 }
 
 }  // namespace

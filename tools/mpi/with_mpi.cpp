@@ -223,9 +223,9 @@ World::World() {
   if (!was_launched()) return;
   mpi_ = std::make_unique<Mpi>();
   if (const int size = launched(); mpi_->ranks().alone() && size > 1)
-    throw std::runtime_error("started as one of " + std::to_string(size) + " processes by a launcher that " + mpi_version() +
-                             " does not understand, so that each would write the same files; expected its own mpirun, or " +
-                             "srun --mpi=pmix");
+    throw std::runtime_error(
+        "misfit was started as one of " + std::to_string(size) + " processes by a launcher that " + mpi_version() +
+        " does not understand, so that each would write the same files; expected its own mpirun, or " + "srun --mpi=pmix");
 }
 
 World::~World() = default;

@@ -10,7 +10,7 @@ class World::Mpi {};
 World::World() {
   if (was_launched())
     throw std::runtime_error(
-        "started by a launcher of MPI programs, but this misfit was built without MPI; expected to be alone");
+        "misfit was started by a launcher of MPI programs, but was built without MPI; expected to be started alone");
 }
 
 World::~World() = default;

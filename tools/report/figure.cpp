@@ -168,7 +168,8 @@ std::string element_of(const std::string& file, const Figure& figure) {
   const std::size_t start = file.find("<svg");
   const std::size_t end = file.rfind("</svg>");
   if (start == std::string::npos || end == std::string::npos)
-    throw std::runtime_error("figure " + figure.name + " cannot be drawn: gnuplot could not finish it; is the disk full?");
+    throw std::runtime_error("figure " + figure.name +
+                             " cannot be drawn: gnuplot could not finish it; expected room on the disk");
   const std::string id = id_of(figure);
   std::string element = file.substr(start, end + 6 - start);
   element = replaced(element, "id='gp", "id='" + id + "_gp");

@@ -38,9 +38,10 @@ void fit(const imager::Image& psf, double cell_rad, BeamChoice& choice) {
 
 void declare_restoring_beam(CLI::App& command, std::string& typed_beam) {
   mark(command
-           .add_option("--restoringbeam", typed_beam,
-                       "Restore with this beam: MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg; the fitted one when "
-                       "empty; circular, as wide as the fitted one is long; or common, one for all planes of a cube")
+           .add_option(
+               "--restoringbeam", typed_beam,
+               "Beam of the restored image: MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg; circular, with the width of "
+               "the fitted beam's major axis; or common, one beam for all planes of a cube. When empty: the fitted beam")
            ->check(values_are({"common", "circular"}, Others::possible)),
        OptionMark::free_of_state);
 }

@@ -58,104 +58,116 @@ void declare(CLI::App& command, TypedClean& o) {
   std::vector<std::string> deconvolvers = imager::deconvolver_names();
   deconvolvers.emplace_back("mtmfs");
   mark(command
-           .add_option(
-               "--deconvolver", o.deconvolver,
-               "How components are found: hogbom, clark or multiscale; mtmfs, with --nterms (then 2 where it is not given): "
-               "multiscale where there are --scales, else hogbom")
+           .add_option("--deconvolver", o.deconvolver,
+                       "Method of CLEAN: hogbom, clark or multiscale; or mtmfs with --nterms, 2 unless given, which is "
+                       "multiscale if there are --scales, else hogbom")
            ->check(CLI::IsMember(deconvolvers)),
        OptionMark::way_of_clean);
   mark(command
            .add_option("--scales", o.scales,
-                       "Of multiscale, in pixels: 0,5,15. As wide at half maximum as tclean's, 0.74 of the number; 0 = points")
+                       "Scales of multiscale in pixels, such as 0,5,15; 0 means points. As in tclean, the full width at half "
+                       "maximum is 0.74 times the number")
            ->delimiter(','),
        OptionMark::way_of_clean);
-  mark(command.add_option("--smallscalebias", o.smallscalebias, "The largest scale counts this part less than points"),
+  mark(command.add_option("--smallscalebias", o.smallscalebias,
+                          "Part, 0 or more and below 1, by which multiscale lowers the merit of the largest scale; smaller "
+                          "scales are lowered in proportion, points not at all"),
        OptionMark::way_of_clean);
   mark(command.add_option(
            "--niter", o.niter,
-           "CLEAN components to find at most; 0 makes the dirty image, or, with --startmodel, what that model leaves"),
+           "Largest number of CLEAN components; 0 makes the dirty image, or with --startmodel the residual of that model"),
        OptionMark::free_of_state);
-  mark(command.add_option("--gain", o.gain, "Part of a peak that a component takes"), OptionMark::way_of_clean);
+  mark(command.add_option("--gain", o.gain, "Part of a peak that a component takes away"), OptionMark::way_of_clean);
   mark(command
            .add_option("--threshold", o.threshold,
-                       "Stop when the peak residual reaches this flux density, to 1%; in Jy without a unit")
+                       "Stop when the peak residual reaches this flux density, to within 1%; Jy without a unit")
            ->check(quantity(parse_flux_jy)),
        OptionMark::free_of_state);
-  mark(command.add_option("--nsigma", o.nsigma, "Stop when it reaches this many times the noise; 0 = never"),
+  mark(command.add_option("--nsigma", o.nsigma, "Stop when the peak residual reaches this many times the noise; 0 means never"),
        OptionMark::free_of_state);
   mark(command.add_option(
            "--cyclefactor", o.cyclefactor,
-           "Minor cycles go down to the peak times the largest sidelobe times this, and on while sidelobes of what they "
-           "found, times this, are fainter"),
+           "A minor cycle goes down to the peak residual times the PSF's largest sidelobe times this factor. It goes on deeper "
+           "while this factor times the sidelobes of the components found is fainter than the residual's peak"),
        OptionMark::way_of_clean);
-  mark(command.add_option("--minpsffraction", o.minpsffraction, "Minor cycles go no deeper than to this part of the peak"),
-       OptionMark::way_of_clean);
-  mark(command.add_option("--maxpsffraction", o.maxpsffraction, "Minor cycles go at least down to this part of the peak"),
-       OptionMark::way_of_clean);
-  mark(command.add_option("--cycleniter", o.cycleniter, "Components that a minor cycle finds at most; -1 = no limit"),
-       OptionMark::way_of_clean);
-  mark(command.add_option("--nmajor", o.nmajor, "Major cycles at most; -1 = no limit"), OptionMark::free_of_state);
-  declare_restoring_beam(command, o.restoringbeam);
   mark(
-      mark(command
-               .add_option(
-                   "--mask", o.mask,
-                   "Where CLEAN finds components: a FITS or CASA image, not 0 there, wherever its coordinates have it, or a "
-                   "region file of CASA (CRTF), CARTA or DS9, or one region itself, such as 'circle [[100pix, 80pix], 20pix]'; "
-                   "CRTF may name planes: corr=[I, Q], range=[3chan, 7chan]. Several allow what any of them does")
-               ->expected(1, most_masks)
-               ->type_name(file_type),
-           OptionMark::way_of_clean),
-      OptionMark::one_or_each);
+      command.add_option("--minpsffraction", o.minpsffraction, "Minor cycles go no deeper than this part of the peak residual"),
+      OptionMark::way_of_clean);
+  mark(command.add_option(
+           "--maxpsffraction", o.maxpsffraction,
+           "Minor cycles go at least as deep as this part of the peak residual; not as deep after a cycle that diverged"),
+       OptionMark::way_of_clean);
+  mark(command.add_option("--cycleniter", o.cycleniter,
+                          "Largest number of components that a minor cycle finds; -1 means no limit"),
+       OptionMark::way_of_clean);
+  mark(command.add_option("--nmajor", o.nmajor, "Largest number of major cycles; -1 means no limit"),
+       OptionMark::free_of_state);
+  declare_restoring_beam(command, o.restoringbeam);
+  mark(mark(command
+                .add_option("--mask", o.mask,
+                            "Find components only where one of these masks allows it: FITS or CASA images, which allow the "
+                            "places where they are not 0; region files of CASA (CRTF), CARTA or DS9; or a region itself, such "
+                            "as 'circle [[100pix, 80pix], 20pix]'. CRTF may name planes: corr=[I, Q], range=[3chan, 7chan]")
+                ->expected(1, most_masks)
+                ->type_name(file_type),
+            OptionMark::way_of_clean),
+       OptionMark::one_or_each);
   mark(command
            .add_option("--usemask", o.usemask,
-                       "user: --mask, or everywhere; pb: where the primary beam is --pbmask or more; auto: from the residuals, "
-                       "as tclean's auto-multithresh")
+                       "user: find components in --mask, or everywhere without it; pb: where the primary beam is at least "
+                       "--pbmask; auto: in a mask that is made from the residuals, as by tclean's auto-multithresh")
            ->transform(also_named({{"auto-multithresh", "auto"}}))
            ->check(CLI::IsMember({"user", "auto", "pb"})),
        OptionMark::way_of_clean);
   mark(command.add_option("--sidelobethreshold", o.sidelobethreshold,
-                          "auto: above this times the largest sidelobe times the peak …"),
+                          "auto: new regions exceed this factor times the largest sidelobe times the peak"),
        OptionMark::way_of_clean);
-  mark(command.add_option("--noisethreshold", o.noisethreshold, "… and above this times the noise"), OptionMark::way_of_clean);
-  mark(command.add_option("--lownoisethreshold", o.lownoisethreshold, "… grown down to this times the noise"),
+  mark(command.add_option("--noisethreshold", o.noisethreshold, "auto: new regions exceed this many times the noise"),
        OptionMark::way_of_clean);
-  mark(command.add_option("--minbeamfrac", o.minbeamfrac, "… without regions below this part of the beam's area"),
+  mark(command.add_option("--lownoisethreshold", o.lownoisethreshold,
+                          "auto: regions grow into pixels that exceed this many times the noise"),
        OptionMark::way_of_clean);
-  mark(command.add_option("--growiterations", o.growiterations, "… by this many pixels a major cycle at most"),
+  mark(
+      command.add_option("--minbeamfrac", o.minbeamfrac, "auto: regions smaller than this part of the beam's area are dropped"),
+      OptionMark::way_of_clean);
+  mark(command.add_option("--growiterations", o.growiterations,
+                          "auto: regions grow by at most this many pixels in a major cycle"),
        OptionMark::way_of_clean);
   const auto either = [](CLI::Option* option) {
     mark(option->default_str("true")->check(CLI::IsMember({"true", "false"}, CLI::ignore_case)), OptionMark::way_of_clean);
   };
-  either(command.add_option("--dogrowprune", o.dogrowprune, "auto: regions of what was grown are as large, too"));
-  mark(command.add_option("--smoothfactor", o.smoothfactor, "auto: regions are smoothed by this many beams, …"),
+  either(command.add_option("--dogrowprune", o.dogrowprune, "auto: --minbeamfrac applies to grown regions too"));
+  mark(command.add_option("--smoothfactor", o.smoothfactor,
+                          "auto: regions are smoothed by the beam, widened by this factor; 0 means no smoothing"),
        OptionMark::way_of_clean);
-  mark(command.add_option("--cutthreshold", o.cutthreshold, "… and cut at this part of their largest value then"),
+  mark(command.add_option("--cutthreshold", o.cutthreshold,
+                          "auto: smoothed regions are cut at this part of their largest value"),
        OptionMark::way_of_clean);
-  mark(command.add_option("--negativethreshold", o.negativethreshold,
-                          "auto: absorption deeper than this times the noise is in the mask, too; 0 = none is"),
+  mark(command.add_option(
+           "--negativethreshold", o.negativethreshold,
+           "auto: absorption deeper than this many times the noise is in the mask too; 0 means that no absorption is"),
        OptionMark::way_of_clean);
-  mark(
-      command.add_option("--minpercentchange", o.minpercentchange,
-                         "auto: a mask by noise that grows by less than this percentage is final, once minor cycles go down to "
-                         "--threshold or --nsigma; -1 = never"),
-      OptionMark::way_of_clean);
+  mark(command.add_option("--minpercentchange", o.minpercentchange,
+                          "auto: once minor cycles go down to --threshold or --nsigma, a mask whose threshold follows from the "
+                          "noise is final if it grows by less than this percentage; -1 means never"),
+       OptionMark::way_of_clean);
   either(command.add_option(
       "--fastnoise", o.fastnoise,
-      "auto: noise is that of all pixels; false: of those outside the mask and, where the primary beam is known, inside "
-      "--pblimit and --pbmask; before there is a mask, of those that Chauvenet's criterion leaves"));
+      "true: auto measures the noise in all pixels; false: in pixels outside the mask and, if the primary beam is known, "
+      "inside --pblimit and --pbmask; while there is no mask, in pixels that Chauvenet's criterion leaves"));
   command
-      .add_option(
-          "--startmodel", o.startmodel,
-          "Begin with this model, a FITS or CASA image in Jy/pixel of the same pixels; or, with --nterms 2 or 3, one for "
-          "each term: a.model.tt0.fits a.model.tt1.fits")
+      .add_option("--startmodel", o.startmodel,
+                  "Begin with this model, a FITS or CASA image in Jy/pixel with the image's pixels; with --nterms 2 or 3, one "
+                  "file for each term, such as a.model.tt0.fits a.model.tt1.fits")
       ->expected(1, imager::most_taylor_terms)
       ->type_name(file_type);
-  mark(command.add_option("--savemodel", o.savemodel, "modelcolumn: write the model's visibilities into MODEL_DATA; none")
+  mark(command
+           .add_option("--savemodel", o.savemodel,
+                       "modelcolumn: write the model's visibilities into MODEL_DATA; none: write nothing")
            ->check(CLI::IsMember({"none", "modelcolumn"})),
        OptionMark::free_of_state);
   mark(mark(command.add_flag("--restart", o.restart,
-                             "Go on from the last major cycle of a run that was cut, or ended, with these options"),
+                             "Go on from the last major cycle of a run with these options that was stopped or has ended"),
             OptionMark::free_of_state),
        OptionMark::not_repeated);
 }

@@ -172,10 +172,11 @@ class AxisMaker {
     const std::string planes =
         "the cube's planes, " + frequency_text(low, 8) + " to " + frequency_text(high, 8) + in_frame_text(axis_);
     if (!(low > 0))
-      throw std::invalid_argument(planes + ", reach frequencies that are not positive; expected fewer, or another --start");
+      throw std::invalid_argument(planes +
+                                  ", reach frequencies that are not positive; expected fewer planes, or another --start");
     if (!(high > band_.low_hz && low < band_.high_hz))
-      throw std::invalid_argument(planes + ", hold no data; expected some within " + frequency_text(band_.low_hz, 8) + " to " +
-                                  frequency_text(band_.high_hz, 8));
+      throw std::invalid_argument(planes + ", hold no data; expected planes within " + frequency_text(band_.low_hz, 8) +
+                                  " to " + frequency_text(band_.high_hz, 8));
   }
 
   static constexpr int most_planes = 65536;
@@ -192,44 +193,51 @@ class AxisMaker {
 void declare(CLI::App& command, CubeOptions& o) {
   command
       .add_option("--specmode", o.specmode,
-                  "mfs: one image of the whole band; cube: planes of frequency, in --outframe; cubedata: planes of the data's "
-                  "frequencies as they are; cubesource: planes in the rest frame of a planet or of an ephemeris' target")
+                  "mfs: one image of the whole band; cube: planes of frequency in --outframe; cubedata: planes in the "
+                  "frequencies of the data; cubesource: planes in the rest frame of a planet or of an ephemeris' target")
       ->check(CLI::IsMember({"mfs", "cube", "cubedata", "cubesource"}));
-  command.add_option("--nchan", o.nchan, "Planes of a cube; -1 = to the end of the data");
+  command.add_option("--nchan", o.nchan, "Number of planes of a cube; -1 means up to the end of the data");
   command.add_option("--start", o.start,
-                     "The first plane: a channel of those selected in the first window, such as 3, or of all of it, 3chan; a "
-                     "frequency such as 1.4GHz, or a "
-                     "velocity such as 20km/s, in --outframe; the first channel when empty");
-  command.add_option("--chanwidth,--width", o.chanwidth,
-                     "From plane to plane: channels, a frequency or a velocity, negative to go down; one channel when empty");
+                     "First plane: a channel counted among the selected ones of the first window, such as 3, or among all its "
+                     "channels, such as 3chan; or a frequency such as 1.4GHz or a velocity such as 20km/s, in --outframe; the "
+                     "first selected channel when empty");
+  command.add_option(
+      "--chanwidth,--width", o.chanwidth,
+      "Step from plane to plane, in channels, frequency or velocity, negative to go down; one channel when empty");
   command
-      .add_option(
-          "--outframe", o.outframe,
-          "Where planes have their frequencies: LSRK, LSRD, BARY, GEO, TOPO, GALACTO, LGROUP or CMB; REST for data that "
-          "are at rest in the source already")
+      .add_option("--outframe", o.outframe,
+                  "Frame of the planes' frequencies: LSRK, LSRD, BARY, GEO, TOPO, GALACTO, LGROUP or CMB; or REST, for data "
+                  "that are in the source's rest frame already")
       ->check(values_are({"LSRK", "LSRD", "BARY", "GEO", "TOPO", "GALACTO", "LGROUP", "CMB", "REST"}));
   command
-      .add_option(
-          "--veltype", o.veltype,
-          "What velocities of --start and --chanwidth are: radio, c (1 - f/restfreq); or optical, c (restfreq/f - 1), in "
-          "which planes are then evenly spaced")
+      .add_option("--veltype", o.veltype,
+                  "Definition of the velocities of --start and --chanwidth: radio, c (1 - f/restfreq); or optical, c "
+                  "(restfreq/f - 1), which also spaces planes evenly in velocity")
       ->check(CLI::IsMember({"radio", "optical"}, CLI::ignore_case));
-  command.add_option("--restfreq", o.restfreq, "Of the line: headers state it, and velocities are relative to it");
+  command.add_option("--restfreq", o.restfreq,
+                     "Rest frequency of the line, to which velocities are relative; headers state it");
   command
       .add_option("--interpolation", o.interpolation,
-                  "linear: planes take visibilities interpolated between channels; nearest: the channels within them")
+                  "linear: interpolate visibilities between channels to the planes' frequencies; nearest: take the channels "
+                  "within each plane")
       ->check(CLI::IsMember({"linear", "nearest"}));
   command
       .add_option("--perchanweightdensity", o.perchanweightdensity,
-                  "true: the weights of each plane follow from its own density of samples; false: from that of all planes")
+                  "true: each plane's weights follow from the density of its own samples; false: from the density of all "
+                  "planes' samples")
       ->default_str("true")
       ->check(CLI::IsMember({"true", "false"}, CLI::ignore_case));
 }
 
 double rest_frequency_hz(const CubeOptions& o) {
   if (o.restfreq.empty()) return 0;
-  const double hz = parse_frequency_hz(o.restfreq);
-  if (!(hz > 0) || !has_unit(o.restfreq)) refuse_option("restfreq", o.restfreq, "a frequency such as 1.420405752GHz");
+  double hz = 0;
+  try {
+    hz = parse_frequency_hz(o.restfreq);
+  } catch (const std::invalid_argument&) {  // said below
+  }
+  if (!(hz > 0) || !has_unit(o.restfreq))
+    refuse_option("restfreq", o.restfreq, "a frequency such as 1.420405752GHz, above 0 and with its unit");
   return hz;
 }
 
@@ -297,9 +305,9 @@ std::string windows_left_out(const imager::SpectralAxis& axis, const std::vector
       "the cube's planes, " + frequency_text(low, 8) + " to " + frequency_text(high, 8) + " in " + axis.frame;
   if (count > most) text += "; and " + std::to_string(count - most) + " more";
   if (count == windows.size())
-    throw std::invalid_argument(planes + ", hold no data: they lie between windows; expected some within those selected, " +
-                                text);
-  return "left out is what lies beside " + planes + ": " + text;
+    throw std::invalid_argument(
+        planes + ", hold no data: they lie between windows; expected planes within the windows selected, " + text);
+  return "data outside " + planes + ", are left out: " + text;
 }
 
 std::string spectral_frame(const CubeOptions& o) {

@@ -36,6 +36,7 @@ imager::Decision data_column_decision(const std::vector<ms_io::DataColumn>& colu
   for (const ms_io::DataColumn& column : columns)
     for (const std::string& command : column.subtracted)
       because += "; " + column.name + " of " + column.path + " lacks the model that was subtracted by " + command;
+  if (columns.size() == 1) because += "; the set has " + columns.front().there;
   return {"data column", columns_text(columns), because};
 }
 

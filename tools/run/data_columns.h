@@ -11,7 +11,8 @@ namespace misfit::tools {
 /// The columns of all sets in words: "CORRECTED_DATA", or "CORRECTED_DATA of a.ms, DATA of b.ms".
 std::string columns_text(const std::vector<ms_io::DataColumn>& columns);
 
-/// The columns that visibilities are read from, why, and which models were subtracted from them; `asked` is --datacolumn.
+/// The columns that visibilities are read from, why, which models were subtracted from them and, of one set, which columns
+/// there are; `asked` is --datacolumn.
 imager::Decision data_column_decision(const std::vector<ms_io::DataColumn>& columns, const std::string& asked);
 
 /// A warning that sets are imaged from different columns which nobody named; else empty.

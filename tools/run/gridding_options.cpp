@@ -25,9 +25,8 @@ void check_tables(const TypedGridding& o) {
 void declare_gridder(CLI::App& command, TypedGridding& o) {
   command
       .add_option("--gridder", o.gridder,
-                  "w planes: auto (where w matters), standard (none), wide (always); or mosaic: pointings become one image, "
-                  "each with its "
-                  "beam, which auto makes of fields that point apart with one --phasecenter")
+                  "auto corrects for w if it matters; standard never does, wide always does; mosaic joins pointings to one "
+                  "image by their beams. auto also makes a mosaic of fields that point apart if there is a --phasecenter")
       ->transform(also_named({{"gridft", "standard"},
                               {"widefield", "wide"},
                               {"wproject", "wide"},
@@ -40,18 +39,23 @@ void declare(CLI::App& command, TypedGridding& o) {
   list_kernels(*command.add_option("--kernel", o.kernel.name,
                                    "Gridding function: a name such as least-misfit or spheroidal, or a kernel-table file"));
   declare_kernel_folder(command, o.kernel.folder);
-  command.add_option("--accuracy", o.accuracy,
-                     "Largest error of the whole image relative to the direct transform, RMS over RMS");
-  command.add_option("--psf-accuracy", o.psf_accuracy, "The same of the PSF; 0 = the larger of --accuracy and 1e-4");
-  command.add_option("--kernel-width", o.kernel_width, "Cells a visibility touches per axis; chosen when 0");
-  command.add_option("--padding", o.padding, "FFT size over image size; chosen when 0");
+  command.add_option(
+      "--accuracy", o.accuracy,
+      "Largest error that the image may have: RMS of its difference from the direct transform, over the RMS of the image");
+  command.add_option(
+      "--psf-accuracy", o.psf_accuracy,
+      "Largest error that the PSF may have, defined as for --accuracy; 0 means the larger of --accuracy and 1e-4");
+  command.add_option("--kernel-width", o.kernel_width,
+                     "Grid cells that a visibility touches per axis; 0 means that they are chosen");
+  command.add_option("--padding", o.padding, "FFT size over image size; 0 means that it is chosen");
   command
       .add_option("--evaluation", o.evaluation,
-                  "Kernel values from: polynomial, as short as the kernel's error allows; full polynomial; or a table, read "
-                  "by interpolation (with --sampling)")
+                  "Compute kernel values by a polynomial as short as the kernel's error allows (polynomial) or by the full "
+                  "polynomial (full); or look them up in a table (nearest, linear, quadratic, cubic; with --sampling)")
       ->check(CLI::IsMember({"polynomial", "full", "nearest", "linear", "quadratic", "cubic"}));
-  command.add_option("--sampling", o.sampling, "Entries a cell of a table of kernel values");
-  command.add_option("--precision", o.precision, "Of kernel values, grid and FFT: auto, single, double")
+  command.add_option("--sampling", o.sampling,
+                     "Entries per cell of the table that --evaluation nearest, linear, quadratic or cubic looks up");
+  command.add_option("--precision", o.precision, "Precision of kernel values, grid and FFT")
       ->check(CLI::IsMember({"auto", "single", "double"}));
 }
 

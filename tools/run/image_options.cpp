@@ -58,35 +58,33 @@ void check_image(const ImageOptions& o) {
 
 void declare_scene(CLI::App& command, ImageOptions& o) {
   command
-      .add_option(
-          "--vis", o.vis,
-          "MeasurementSet, or several for one image, each with a selection of its own where --field to --observation have as "
-          "many values; opened read-only, but to save a model")
+      .add_option("--vis", o.vis,
+                  "MeasurementSet, or several for one image; --field to --observation may then have one value for each set. "
+                  "Sets are opened read-only, unless misfit image --savemodel writes into them")
       ->required()
       ->type_name(folder_type);
-  command.add_option(
-      "--phasecenter", o.phasecenter,
-      "Shift the visibilities to a direction, such as 'J2000 12h30m49.4s +12d23m28s', or to the phase centre of a "
-      "field by id or name; what is selected may then have several. The image moves along with a planet, SUN or MOON by name, "
-      "with the ephemeris at a path, or with TRACKFIELD what each field follows");
+  command.add_option("--phasecenter", o.phasecenter,
+                     "Shift the visibilities to a direction, such as 'J2000 12h30m49.4s +12d23m28s', or to the phase centre of "
+                     "a field, by id or name; several fields may then be selected. The image follows a moving target: a "
+                     "planet, SUN or MOON by name, the ephemeris at a path, or with TRACKFIELD each field's own ephemeris");
   command.add_option("--imsize", o.imsize, "Width, or width and height, in pixels")->required()->expected(1, 2);
   command
       .add_option_function<std::vector<std::string>>(
           "--cell", [&o](const std::vector<std::string>& sides) { o.cell = one_cell(sides); },
-          "Size of a pixel: 0.2arcsec, 3mas, …, or two that are equal, as pixels are square; in arcsec without a unit")
+          "Size of a pixel, such as 0.2arcsec or 3mas; arcsec without a unit. Two sizes must be equal: pixels are square")
       ->required()
       ->expected(1, 2)
       ->check(quantity(parse_angle_rad));
   declare_selection_of_each(command, o.selection);
   command
       .add_option("--datacolumn", o.datacolumn,
-                  "auto (CORRECTED_DATA where a set has it, else DATA), data, corrected, model, or a column's name; or one for "
-                  "each set: corrected,data")
+                  "auto (CORRECTED_DATA if a set has it, else DATA), data, corrected, model, or a column's name; or one value "
+                  "for each set, such as corrected,data")
       ->check(values_are({"auto", "data", "corrected", "model"}, Others::possible));
   mark(command.add_flag(
            "--force-average", o.force_average,
-           "Average fields whose antennas pointed apart even where the image's centre lies beyond the first null of "
-           "one's beam, which dims what the others see; without it they are refused by name"),
+           "Average fields of different pointings even if the image's centre lies beyond the first null of some field's beam, "
+           "which dims the sources that the other fields see. Without this option such fields are refused by name"),
        OptionMark::free_of_state);
   declare(command, o.weighting);
   declare_gridder(command, o.gridding);
@@ -110,15 +108,14 @@ ms_io::Selection selection_of(const ImageOptions& o) {
 
 void declare(CLI::App& command, ImageOptions& o) {
   declare_scene(command, o);
-  mark(command.add_option("--imagename", o.imagename, "Names of the output files begin with this")
+  mark(command.add_option("--imagename", o.imagename, "The names of the output files begin with this")
            ->required()
            ->type_name(path_type)
            ->check(not_empty()),
        OptionMark::free_of_state);
-  command.add_option(
-      "--stokes", o.stokes,
-      "Stokes parameters, or correlations of parallel hands, which share one PSF: I, IQUV, IV, XXYY, RR, …; or pseudoI: "
-      "I also of samples of which one parallel hand is flagged");
+  command.add_option("--stokes", o.stokes,
+                     "Stokes parameters, or parallel-hand correlations, which share one PSF: I, IQUV, IV, XXYY, RR, …; or "
+                     "pseudoI: I, also from samples of which one parallel hand is flagged");
   declare(command, o.cube);
   declare(command, o.gridding);
   declare(command, o.mosaic);
@@ -127,22 +124,23 @@ void declare(CLI::App& command, ImageOptions& o) {
   declare(command, o.primary_beam);
   declare(command, o.taken);
   mark(command
-           .add_option(
-               "--products", o.products,
-               "Images besides those needed: tclean adds .sumwt, one pixel for the sum of each plane's weights, of natural "
-               "ones 1/noise²; .pb where the antennas' beam is known; .mask of ones where CLEAN may go everywhere; and "
-               ".image of a dirty image")
+           .add_option("--products", o.products,
+                       "tclean: also write .sumwt, the sum of each plane's weights in one pixel, which is 1/noise² for natural "
+                       "weights; .pb if the antennas' beam is known; .mask, filled with ones if CLEAN may go everywhere; and "
+                       ".image of a dirty image")
            ->check(CLI::IsMember({"needed", "tclean"})),
        OptionMark::free_of_state);
   mark(command.add_option(
            "--verify", o.verify,
-           "Compare this many random pixels, or all of a smaller image, and visibilities with the direct transform"),
+           "Compare this many random pixels (all of a smaller image) and this many visibilities with the direct transform"),
        OptionMark::free_of_state);
-  command.add_flag("--check-outside", o.check_outside,
-                   "Look for sources outside the image, in four times its field, whose aliases may exceed its noise");
-  mark(command.add_option("--memory", o.memory_gib, "GiB that the run may take; 0 means half of the machine's memory"),
+  mark(command.add_flag("--check-outside", o.check_outside,
+                        "Search four times the image's field for sources outside the image whose aliases may exceed its noise"),
        OptionMark::free_of_state);
-  mark(command.add_option("--outformat", o.outformat, "Images as files of: fits, casa, both")
+  mark(command.add_option("--memory", o.memory_gib,
+                          "Memory that the run may take, in GiB; 0 means half of the machine's memory"),
+       OptionMark::free_of_state);
+  mark(command.add_option("--outformat", o.outformat, "Format of the images: FITS files (fits), CASA images (casa), or both")
            ->check(CLI::IsMember(image_formats())),
        OptionMark::free_of_state);
   mark(command.add_flag("--dry-run", o.dry_run,

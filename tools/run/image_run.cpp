@@ -32,6 +32,7 @@
 #include "tools/run/mosaic_stage.h"
 #include "tools/run/outside_stage.h"
 #include "tools/run/phased_set.h"
+#include "tools/run/pixel_plan.h"
 #include "tools/run/products.h"
 #include "tools/run/run_messages.h"
 #include "tools/run/run_plan.h"
@@ -40,6 +41,7 @@
 #include "tools/run/sharing.h"
 #include "tools/run/taylor_options.h"
 #include "tools/run/weighting_options.h"
+#include "tools/run/written_column.h"
 #include "tools/run_page/report_page.h"
 
 namespace misfit::tools {
@@ -81,21 +83,24 @@ class ImageRun : private ChannelSink {
     if (o_.dry_run) return tell_plan();
     begin_channels();
     if (cube() && !o_.cube.perchanweightdensity) weigh_in_common();
-    make_channels();
-    maker_.reset();
-    if (cube()) count_samples();
-    if (!ranks_.alone()) report_.plan.push_back(sharing_.traffic_decision(times_));
-    if (ranks_.first()) {
-      finish_products();
-      write_report();
+    try {
+      make_channels();
+      maker_.reset();
+      if (cube()) count_samples();
+      if (!ranks_.alone()) report_.plan.push_back(sharing_.traffic_decision(times_));
+      if (ranks_.first()) finish_products();
+    } catch (const imager::NothingInGrid& nothing) {
+      throw std::runtime_error(std::string(nothing.what()) + ": " + keeping_cell_words(reach_));
     }
-    if (o_.clean.savemodel == "modelcolumn") save_model();
-    if (ranks_.first()) outcome_.words = summary(report_) + o_.imagename + ".report.html\n";
+    if (ranks_.first()) write_report();
+    const std::string saved = o_.clean.savemodel == "modelcolumn" ? save_model() : "";
+    if (ranks_.first()) outcome_.words = summary(report_) + saved + o_.imagename + ".report.html\n";
     outcome_.complete = !queue_->stopped();
     imager::share_values(ranks_, outcome_.complete);
   }
 
   void tell_plan() {
+    if (leaves_grid(reach_, header_.geometry)) warn(outside_grid_forecast(reach_));
     const std::vector<StageSeconds> seconds = expected();
     outcome_.words = plan_text(plan_, seconds);
     report_.plan.insert(report_.plan.end(), plan_.gridding.decisions.begin(), plan_.gridding.decisions.end());
@@ -128,6 +133,7 @@ class ImageRun : private ChannelSink {
     if (auto own = sharing_.own_part(*set_)) set_ = std::move(own);
     if (o_.clean.savemodel != "none")
       if (const std::string words = left_out_of_model_warning(stokes_, *set_); !words.empty()) warn(words);
+    if (o_.clean.savemodel == "modelcolumn" && ranks_.first()) warn_of_unselected();
     windows_ = set_->spectral_windows();
     header_ = {.geometry = geometry_of(o_, set_->observation().phase_centre),
                .observation = set_->observation(),
@@ -177,7 +183,7 @@ class ImageRun : private ChannelSink {
                                                          std::max(1, threads_ / sharing_.channels_here(channels())));
     } catch (const NoPrimaryBeam& none) {
       if (o_.primary_beam.required())
-        throw std::runtime_error(std::string("--pbcor, --pblimit, --pbmask, --beam: ") + none.what());
+        throw std::runtime_error(o_.primary_beam.asked() + ": no primary beam can be applied: " + none.what());
       if (o_.primary_beam.wanted()) warn(std::string("no .pb is written: ") + none.what());
       if (o_.measures_noise_in_beam()) warn(std::string("masks have the noise of all of the image: ") + none.what());
       o_.primary_beam = {};
@@ -254,6 +260,7 @@ class ImageRun : private ChannelSink {
     cube() ? plan_batches(scene) : plan_streaming(scene);
     foretell(scene, forecast_, work_, times_, plan_);
     report_.plan = plan_.decisions;
+    report_.geometry = header_.geometry;
     report_.accuracy = o_.gridding.accuracy;
     report_.gridding = &plan_.gridding;
     report_.estimated_memory_bytes = plan_.memory.total();
@@ -599,7 +606,12 @@ class ImageRun : private ChannelSink {
       report_.plan.push_back({d.item + " of plane " + std::to_string(shown.channel), d.decision, d.because});
   }
 
-  void save_model() {
+  void warn_of_unselected() {
+    for (std::size_t i = 0; i < o_.vis.size(); ++i)
+      if (const std::string words = unselected_warning(o_.vis[i], set_->selection().of_set(i), {}); !words.empty()) warn(words);
+  }
+
+  std::string save_model() {
     visibilities_.reset();  // closed before a column is written
     set_.reset();
     progress_.begin("save model", true);  // a column half written helps no one
@@ -611,8 +623,10 @@ class ImageRun : private ChannelSink {
                            json_text(report_.options),
                            [this](const std::string& sentence) { progress_.say(sentence); },
                            o_.taylor.nterms > 1 ? taylor_expansion(o_.taylor, header_.observation) : imager::TaylorExpansion()};
-    tools::save_model(o_, model, ranks_, [this](std::uint64_t done, std::uint64_t total) { progress_.update(done, total); });
+    const std::string words = tools::save_model(
+        o_, model, ranks_, [this](std::uint64_t done, std::uint64_t total) { progress_.update(done, total); });
     progress_.end();
+    return words;
   }
 
   ImageOptions o_;  ///< less a primary beam that the antennas do not have
@@ -636,7 +650,7 @@ class ImageRun : private ChannelSink {
   std::vector<ms_io::SpectralWindow> windows_;
   imager::CubeSampling sampling_;  ///< of a cube
   imager::ImageHeader header_;
-  imager::UvwReach reach_;
+  ms_io::SetReach reach_;
   FieldNotes notes_;
   std::unique_ptr<PrimaryBeamStage> primary_beam_;  ///< null where neither images nor masks need it
   MosaicStage mosaic_;                              ///< empty unless pointings become one image

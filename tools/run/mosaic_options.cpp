@@ -9,18 +9,18 @@ namespace misfit::tools {
 void declare(CLI::App& command, TypedMosaic& o) {
   command
       .add_option("--normtype", o.normtype,
-                  "Images of mosaics are: flatnoise, the sky times .pb, with the same noise everywhere; or flatsky, the sky, "
-                  "with more noise where beams see less")
+                  "flatnoise: a mosaic's images are the sky times .pb, and the noise is the same everywhere; flatsky: they are "
+                  "the sky, and the noise is higher where the beams see less")
       ->check(CLI::IsMember({"flatnoise", "flatsky"}));
   command.add_option("--psfphasecenter", o.psfphasecenter,
-                     "The PSF of a mosaic is that of a source in this direction, given as --phasecenter; without it in the "
-                     "middle of the image, or where the nearest pointing is if no beam sees that");
-  command.add_option(
-      "--beam-cut", o.beam_cut,
-      "Beams of a mosaic are taken as 0 beyond where their main lobe falls to this part of its peak at the lowest "
-      "frequency, at the same radius at all frequencies");
+                     "Compute a mosaic's PSF as the image of a source in this direction, given as for --phasecenter. When "
+                     "empty: in the middle of the image, or at the nearest pointing if no beam exceeds half its peak there");
+  command.add_option("--beam-cut", o.beam_cut,
+                     "Set beams of a mosaic to 0 beyond the radius where the main lobe at the lowest frequency falls to this "
+                     "part of its peak; the radius is the same at all frequencies");
   command.add_flag("--usepointing", o.usepointing,
-                   "Antennas of a mosaic pointed where the table POINTING says at the time of each row, not where FIELD does");
+                   "Take the directions in which a mosaic's antennas pointed from the table POINTING, at the time of each row, "
+                   "instead of FIELD");
 }
 
 void refuse_beside_other_gridders(const TypedMosaic& o) {

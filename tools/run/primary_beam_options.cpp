@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <utility>
 
 #include "tools/base/option_checks.h"
 #include "tools/run/dish_beams.h"
@@ -13,41 +14,43 @@ double TypedPrimaryBeam::limit() const {
   return pblimit == 0 ? usual : std::abs(pblimit);
 }
 
+std::string TypedPrimaryBeam::asked() const {
+  std::string options;
+  for (const auto& [option, given] :
+       {std::pair("--pbcor", pbcor), {"--pblimit", pblimit != 0}, {"--pbmask", pbmask > 0}, {"--beam", !beam.empty()}})
+    if (given) options += (options.empty() ? "" : ", ") + std::string(option);
+  return options;
+}
+
 void declare(CLI::App& command, TypedPrimaryBeam& o) {
-  mark(
-      command.add_flag("--pbcor", o.pbcor,
-                       "Write .image.pbcor too, the image divided by the antennas' primary beam, and .pb, the beam, for dishes "
-                       "that point alike. With --nterms 2 or 3 each term is divided by the beam's own spectrum too: "
-                       ".image.tt0.pbcor, "
-                       ".image.tt1.pbcor, …, .alpha.pbcor and .beta.pbcor"),
-      OptionMark::free_of_state);
+  mark(command.add_flag("--pbcor", o.pbcor,
+                        "Also write .pb, the antennas' primary beam, and .image.pbcor, the image divided by it; dishes must "
+                        "point alike. With --nterms 2 or 3, each term is also corrected for the spectrum of the beam: "
+                        ".image.tt0.pbcor, .image.tt1.pbcor, …, .alpha.pbcor and .beta.pbcor"),
+       OptionMark::free_of_state);
   mark(command.add_option(
            "--pblimit", o.pblimit,
-           "Where the primary beam is lower, .pb and .image.pbcor have no values; 0.2 when 0. Without --pbcor .pb "
-           "alone is written. Above 0 it goes for the masks of CASA images .image and .residual too, whose pixels stay; the "
-           "sign makes no other difference"),
+           ".pb and .image.pbcor have no values where the primary beam is lower than this; 0 means 0.2. Without --pbcor, only "
+           ".pb is written. A positive value also limits the masks of the CASA images .image and .residual, whose pixels stay. "
+           "A mosaic is not cleaned where the beam is lower, unless the value is negative"),
        OptionMark::free_of_state);
   mark(command
-           .add_option(
-               "--beam", o.beam,
-               "The primary beam in place of that of the antennas' telescope: a telescope's by its name, or airy, a uniformly "
-               "lit "
-               "dish of the antennas' diameter, airy:D of D metres, airy:D:B with a dark middle of B metres; or a FITS image "
-               "of a "
-               "power pattern, or a cube with its frequencies, which turns with the zenith; voltage:FILE of a voltage pattern. "
-               "Writes .pb, as --pblimit does")
+           .add_option("--beam", o.beam,
+                       "Primary beam to use instead of the beam of the antennas' telescope: a telescope's name; airy, a "
+                       "uniformly lit dish of the antennas' diameter; airy:D, of D metres; airy:D:B, with a dark middle of B "
+                       "metres; a FITS image of a power pattern, or a cube along frequency, which turns with the zenith; or "
+                       "voltage:FILE, a voltage pattern. Writes .pb, as --pblimit does")
            ->type_name(name_or_file_type),
        OptionMark::free_of_state);
-  mark(command.add_option(
-           "--pbmask", o.pbmask,
-           "CLEAN finds components only where the primary beam is this or more, in whatever mask; at least --pblimit; 0 = "
-           "everywhere"),
+  mark(command.add_option("--pbmask", o.pbmask,
+                          "Find components only where the primary beam is at least this, whatever the mask; not below "
+                          "--pblimit; 0 means everywhere"),
        OptionMark::way_of_clean);
 }
 
 void check(const TypedPrimaryBeam& o) {
   check_beam(o.beam);
-  if (!(std::abs(o.pblimit) < 1)) refuse_option("pblimit", typed(o.pblimit), "a number between 0 and 1, such as 0.2");
+  if (!(std::abs(o.pblimit) < 1)) refuse_option("pblimit", typed(o.pblimit), "a number between -1 and 1, such as 0.2");
   if (o.pbmask != 0 && !(o.pbmask >= o.limit() && o.pbmask < 1))
     refuse_option("pbmask", typed(o.pbmask), "at least --pblimit, " + typed(o.limit()) + ", and below 1; or 0");
 }

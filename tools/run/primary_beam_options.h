@@ -19,6 +19,8 @@ struct TypedPrimaryBeam {
   bool wanted() const { return where_known || required(); }
   /// True if a run without it is of no use: with --pbcor, --pbmask or --beam, or --pblimit alone.
   bool required() const { return pbcor || pbmask > 0 || !beam.empty() || (pblimit != 0 && !where_known); }
+  /// The options in which it is asked for: "--pbcor, --beam".
+  std::string asked() const;
   /// True if masks say where other images lie below the limit.
   bool masks_others() const { return wanted() && pblimit > 0; }
   /// The value below which images have no values.

@@ -245,10 +245,13 @@ void Products::write_stokes(std::size_t stokes, const OfBeam& primary_beam, Chan
     const imager::StageTimer timer(times, imager::stage::statistics);
     StokesReport& told = run.report().stokes[stokes];
     const double noise_jy = told.clean ? told.clean->final_state().rms_jy : imager::sampled_noise(residual);
-    if (o_.cube.is_cube())
-      look_at(residual, restored.first.pixel.empty() ? nullptr : &restored.first, noise_jy, told);
-    else
+    const imager::Image* const image = restored.first.pixel.empty() ? nullptr : &restored.first;
+    if (o_.cube.is_cube()) {
+      look_at(residual, image, noise_jy, told);
+    } else {
       told.histogram = pixel_histogram(residual, noise_jy, workers_.threads);
+      if (image != nullptr) told.brightest = imager::find_peak(*image);
+    }
   }
   if (pictures != nullptr && result != nullptr) pictures->draw(stokes, *result, restored);
   wait_for(images, run);

@@ -20,23 +20,25 @@ std::string beam_text(const imager::Beam& beam) {
          significant(beam.position_angle_rad * 180 / M_PI, 3) + "°";
 }
 
-/// The beam in words, with the one that WSClean would have, since people compare.
-std::string beam_line(const BeamChoice& beams) {
-  return "beam " + beam_text(*beams.restoring) + (beams.quadrant ? "; by WSClean's rule " + beam_text(*beams.quadrant) : "") +
-         "\n";
+/// "restored peak 106 Jy/beam at 14h 11m 20.519s  +52° 12′ 09.97″ (FK5), pixel 1024, 1024"
+std::string restored_text(const imager::Peak& peak, const imager::ImageGeometry& geometry) {
+  const std::optional<imager::SkyDirection> at = peak_direction(peak, geometry);
+  return "restored peak " + with_prefix(peak.value, "Jy/beam", 4) +
+         (at ? " at " + sexagesimal(*at) + " (" + at->frame + "), pixel " : " at pixel ") + std::to_string(peak.column) + ", " +
+         std::to_string(peak.row);
+}
+
+/// What CLEAN found of a Stokes parameter, and the restored image.
+std::string clean_lines(const StokesReport& of, const imager::ImageGeometry& geometry, const std::string& before) {
+  return before + grouped(of.clean->iterations) + " components, model flux " +
+         with_prefix(of.clean->final_state().model_flux_jy, "Jy", 4) + "; " + of.clean->stop_reason + "\n" + before +
+         restored_text(of.brightest, geometry) + "\n";
 }
 
 }  // namespace
 
 imager::Decision left_out_decision(const imager::SampleCounts& counts) {
   return {"samples left out", left_out_of_all(counts), left_out_reasons(counts)};
-}
-
-std::string outside_grid_warning(std::uint64_t samples, const imager::UvwReach& reach) {
-  const double largest_cell_rad = 0.5 / std::max(reach.max_abs_u, reach.max_abs_v);
-  const ScaledUnit unit = angle_unit(largest_cell_rad);
-  return counted(samples) + " samples lie beyond 1/(2 cell) and were left out; a cell of " +
-         significant(std::floor(largest_cell_rad / unit.size * 1e4) / 1e4, 4) + unit.name + " would keep them";
 }
 
 std::string pointing_warning(const ms_io::FieldPointing& nearest, const imager::ImageGeometry& geometry, double frequency_hz) {
@@ -77,11 +79,6 @@ std::string channel_line(const ChannelReport& channel, int channels) {
   return text;
 }
 
-std::string divergence_warning(const imager::CleanReport& report) {
-  return "CLEAN diverged: a lower --gain, a --mask around the sources, or more scales may help; the largest sidelobe is " +
-         significant(100 * report.max_sidelobe, 2) + " % of the PSF's peak";
-}
-
 std::string summary(const RunReport& r) {
   const ChannelReport& plane = r.channels[r.shown];
   const std::string imaged = r.cube ? " samples imaged, as " + counted(r.channel_samples) + " in " +
@@ -100,12 +97,9 @@ std::string summary(const RunReport& r) {
     text += (plane.stokes.size() > 1 ? " of " + stokes_name(of.stokes) + " " : " ") +
             with_prefix(of.histogram.noise_jy, "Jy/beam", 3) + ",";
   text += " predicted " + with_prefix(plane.predicted_noise_jy, "Jy/beam", 3) + "\n";
-  if (plane.beams && plane.beams->restoring) text += beam_line(*plane.beams);
+  if (plane.beams && plane.beams->restoring) text += "beam " + beam_text(*plane.beams->restoring) + "\n";
   for (const StokesReport& of : plane.stokes)
-    if (of.clean)
-      text += (plane.stokes.size() > 1 ? stokes_name(of.stokes) + ": " : "") + grouped(of.clean->iterations) +
-              " components, model flux " + significant(of.clean->final_state().model_flux_jy, 4) + "; " +
-              of.clean->stop_reason + "\n";
+    if (of.clean) text += clean_lines(of, r.geometry, plane.stokes.size() > 1 ? stokes_name(of.stokes) + ": " : "");
   return text;
 }
 

@@ -15,9 +15,6 @@ namespace misfit::tools {
 /// How many samples were left out, and why.
 imager::Decision left_out_decision(const imager::SampleCounts& counts);
 
-/// A warning that the pixel size cannot represent so many samples, with the pixel size that could.
-std::string outside_grid_warning(std::uint64_t samples, const imager::UvwReach& reach);
-
 /// A warning that the antennas hardly see the image, since it lies 3 λ/D beyond where they pointed in the nearest field, or 10
 /// degrees where D is unknown; else empty.
 std::string pointing_warning(const ms_io::FieldPointing& nearest, const imager::ImageGeometry& geometry, double frequency_hz);
@@ -30,9 +27,6 @@ std::string cycle_message(const imager::CleanState& state);
 
 /// A line on a plane of a cube that is done.
 std::string channel_line(const ChannelReport& channel, int channels);
-
-/// A warning that CLEAN diverged, and what may help.
-std::string divergence_warning(const imager::CleanReport& report);
 
 /// A line or two on a run that is over: samples, errors, and what CLEAN found.
 std::string summary(const RunReport& report);

@@ -14,15 +14,16 @@ constexpr int most_nodes = 1 << 20;
 }  // namespace
 
 void declare(CLI::App& command, ScaleOptions& o) {
-  mark(command.add_option(
-           "--nodes", o.nodes,
-           "With --dry-run: print how long up to so many machines like this one would take, each with --threads and "
-           "--memory, and where more of them do not help"),
+  mark(command.add_option("--nodes", o.nodes,
+                          "With --dry-run: print how long the run would take on up to this many machines like this one, each "
+                          "with --threads and --memory, and from which number on more do not help"),
        OptionMark::free_of_state);
-  mark(command.add_option("--visibilities", o.visibilities, "With --nodes: as if the data had so many samples, such as 1e12"),
+  mark(command.add_option(
+           "--visibilities", o.visibilities,
+           "With --nodes: assume that the data have this many samples, such as 1e12; 0 means as many as they have"),
        OptionMark::free_of_state);
   mark(command.add_option("--network", o.network_gb_s,
-                          "With --nodes: GB/s between machines; 12.5, a network of 100 Gbit/s, when 0"),
+                          "With --nodes: speed of the network between machines in GB/s; 0 means 12.5, a network of 100 Gbit/s"),
        OptionMark::free_of_state);
 }
 

@@ -43,7 +43,7 @@ std::unique_ptr<ms_io::MeasurementSet> Sharing::own_part(const ms_io::Measuremen
   return set.share(ranks_);
 }
 
-imager::UvwReach Sharing::reach(const ms_io::MeasurementSet& own) const {
+ms_io::SetReach Sharing::reach(const ms_io::MeasurementSet& own) const {
   return of_channels_ && !ranks_.alone() ? own.share(ranks_)->reach() : own.reach();
 }
 

@@ -27,7 +27,7 @@ class Sharing {
   /// This rank's part of the samples; null: all of `set`.
   std::unique_ptr<ms_io::MeasurementSet> own_part(const ms_io::MeasurementSet& set) const;
   /// How far all selected samples reach; `own` is this rank's part. Ranks share the rows that are looked through.
-  imager::UvwReach reach(const ms_io::MeasurementSet& own) const;
+  ms_io::SetReach reach(const ms_io::MeasurementSet& own) const;
   /// The number of all samples; this rank has `own` of them.
   double all_samples(double own) const;
 

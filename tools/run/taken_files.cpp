@@ -40,14 +40,13 @@ void declare(CLI::App& command, TypedTaken& o) {
     option->default_str("true")->check(CLI::IsMember({"true", "false"}, CLI::ignore_case));
     mark(option, OptionMark::not_repeated);  // the run puts others in their places
   };
-  flag(command.add_option(
-      "--calcpsf", o.calcpsf,
-      "false: take <imagename>.psf instead of making it. Some of its pixels are compared with direct sums of "
-      "these samples and weights, and may differ by a hundredth of its RMS"));
+  flag(command.add_option("--calcpsf", o.calcpsf,
+                          "false: take <imagename>.psf instead of making it. Some of its pixels are checked against direct "
+                          "sums of the samples and weights, and may differ by a hundredth of the PSF's RMS"));
   flag(command.add_option(
       "--calcres", o.calcres,
-      "false: the same of <imagename>.residual: the dirty image, or with --startmodel what that model leaves. No state "
-      "is kept for --restart"));
+      "false: take <imagename>.residual, the dirty image or, with --startmodel, that model's residual, instead of making it. "
+      "Some of its pixels are checked as for --calcpsf. No state is kept for --restart"));
 }
 
 void check_taken(const ImageOptions& o) {
@@ -69,7 +68,7 @@ std::string TakenFiles::find(const std::string& kind, int order, const char* opt
   const imager::TaylorTerm term{order, o_.taylor.nterms};
   const std::string name = o_.imagename + "." + product_name(kind, term);
   const std::optional<std::string> path = newest_image(name);
-  if (!path) throw std::runtime_error(name + " is not there; expected it, or --" + option + " true");
+  if (!path) throw std::runtime_error(name + " does not exist; expected this image, or --" + option + " true");
   const auto file = opened(*path);
   if (kind == "residual" && file->header().unit != "Jy/beam")
     throw std::runtime_error(*path + " is in '" + file->header().unit + "', expected Jy/beam");
@@ -124,7 +123,7 @@ void TakenFiles::require_weights(int channel, const std::vector<imager::SampleSu
     if (!plane) continue;
     const double has = file->read({of_file, *plane}).pixel.front(), expected = sumwt_of(sums[s]);
     if (!(std::abs(has / expected - 1) < rounding))
-      throw std::runtime_error(sumwt_ + " is " + significant(has, 8) + ", where these samples weigh " +
+      throw std::runtime_error(sumwt_ + " is " + significant(has, 8) + ", but the weights of these samples sum to " +
                                significant(expected, 8) + "; expected the same selection and weighting, or no such file");
   }
 }

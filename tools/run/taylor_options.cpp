@@ -27,14 +27,14 @@ bool is_frequency(const std::string& text) {
 void declare(CLI::App& command, TypedTaylor& o) {
   command.add_option(
       "--nterms", o.nterms,
-      "Terms of spectra, 1 to 3: I(f) is a polynomial of (f - reffreq)/reffreq. With 2 or 3 images are .tt0, .tt1, "
-      "…, whose .image has the principal solution of the residuals; .alpha is the spectral index as the antennas saw it, "
-      "whose beam narrows with frequency (--pbcor takes that out, as .alpha.pbcor), .alpha.error "
-      "its error by noise, NaN where .image.tt0 is below 5 times its noise, and .beta the curvature (of 3). "
-      "Components are points, or with --deconvolver multiscale Gaussians, and have no list");
+      "Number of terms of the spectrum, 1 to 3: I(f) is a polynomial of (f - reffreq)/reffreq. 2 or 3 write images .tt0, .tt1, "
+      "…, where .image includes the principal solution of the residuals; .alpha, the spectral index as the antennas saw it "
+      "(--pbcor writes .alpha.pbcor, freed from the beam's narrowing with frequency); .alpha.error, its error by noise, NaN "
+      "where .image.tt0 is below 5 times its noise; and for 3 .beta, the curvature. Components are points, or Gaussians with "
+      "--deconvolver multiscale; no list of them is written");
   command.add_option(
       "--reffreq", o.reffreq,
-      "Of the terms: 1.4GHz, …; the middle of the band, between the edges of the outermost channels, when empty");
+      "Reference frequency of the terms, such as 1.4GHz. When empty: the middle between the edges of the outermost channels");
 }
 
 void settle_mtmfs(CLI::App& command, ImageOptions& o) {

@@ -182,40 +182,42 @@ std::string f2_text(const imager::F2Range& f2) {
 void declare(CLI::App& command, TypedWeighting& o) {
   command
       .add_option("--weighting", o.scheme,
-                  "natural, uniform, superuniform, briggs, briggsbwtaper (of a cube: its planes are weighed about as its whole "
-                  "band would be) or briggsabs, as tclean has them")
+                  "natural, uniform, superuniform, briggs, briggsbwtaper or briggsabs, as in tclean. briggsbwtaper weighs the "
+                  "planes of a cube about as an image of the whole band is weighed")
       ->check(CLI::IsMember({"natural", "uniform", "superuniform", "briggs", "briggsbwtaper", "briggsabs"}));
   command.add_option("--robust", o.robust,
-                     "Of briggs and briggsbwtaper: from -2, nearly uniform, to 2, nearly natural; of briggsabs R, "
-                     "whose sign makes no difference");
-  command.add_option("--noise", o.noise, "Of briggsabs, in Jy without a unit")->check(quantity(parse_flux_jy));
-  command.add_option("--npixels", o.npixels,
-                     "Of superuniform: density is summed from -npixels/2 to npixels/2 cells about a sample's; 0 means 6");
+                     "Robustness of briggs and briggsbwtaper, from -2 (nearly uniform) to 2 (nearly natural); for briggsabs R, "
+                     "from -2 to 2, whose sign makes no difference");
+  command.add_option("--noise", o.noise, "Noise of a visibility that --weighting briggsabs assumes; Jy without a unit")
+      ->check(quantity(parse_flux_jy));
   command.add_option(
-      "--weighting-rank-filter", o.rank_filter,
-      "Of uniform, superuniform, briggs and briggsabs: a cell multiplies the weights of its samples by no more than "
-      "so many times the mean of what the cells with samples about it do; 0 means no such limit");
+      "--npixels", o.npixels,
+      "--weighting superuniform sums the density over the cells from -npixels/2 to npixels/2 about a sample's cell; 0 means 6");
+  command.add_option("--weighting-rank-filter", o.rank_filter,
+                     "Limit how much uniform, superuniform, briggs or briggsabs raises weights: the factor of a cell is at "
+                     "most this many times the mean factor of the cells with samples about it; 0 means no limit");
   command.add_option("--weighting-rank-filter-size", o.rank_filter_size,
-                     "The mean goes from -SIZE/2 to SIZE/2 cells about a sample's");
+                     "--weighting-rank-filter takes the mean from -SIZE/2 to SIZE/2 cells about a cell");
   command
       .add_option("--mosweight", o.mosweight,
-                  "Of a mosaic weighed by density: true: each pointing's weights follow from the density of its own samples; "
-                  "false: from that of all pointings' samples together")
+                  "true: a mosaic's weights follow from the density of each pointing's own samples; false: from the density of "
+                  "all pointings' samples together. Natural weights do not depend on it")
       ->default_str("true")
       ->check(CLI::IsMember({"true", "false"}, CLI::ignore_case));
   command.add_option("--uvtaper", o.uvtaper,
                      "Taper by a Gaussian, MAJ[,MIN[,PA]]: its full width at half maximum on the sky, such as 5arcsec, or its "
-                     "half width in the uv plane, such as 3klambda; none when empty");
-  command.add_option(
-      "--minuv-l", o.minuv_l,
-      "Give no weight to samples nearer to u = v = 0 than so many wavelengths, at each channel's own frequency: such as "
-      "80 or 3klambda; density counts them nevertheless");
+                     "half width at half maximum in the uv plane, such as 3klambda; no taper when empty");
+  command.add_option("--minuv-l", o.minuv_l,
+                     "Give weight 0 to samples nearer to u = v = 0 than this many wavelengths at their channel's frequency, "
+                     "such as 80 or 3klambda; the density still counts them");
   command.add_option("--maxuv-l", o.maxuv_l,
-                     "Give no weight to samples farther from u = v = 0 than so many wavelengths, likewise");
+                     "Give weight 0 to samples farther from u = v = 0 than this many wavelengths at their channel's frequency; "
+                     "the density still counts them");
   command.add_option("--taper-tukey", o.taper_tukey,
-                     "Let weights fall to 0 along half a period of a cosine, so many wavelengths wide, that ends at --maxuv-l");
+                     "Let weights fall to 0 at --maxuv-l along half a period of a cosine, this many wavelengths wide");
   command.add_option("--taper-inner-tukey", o.taper_inner_tukey,
-                     "Let weights rise from 0 likewise, from --minuv-l outwards, or from u = v = 0");
+                     "Let weights rise from 0 at --minuv-l, or at u = v = 0 without it, along half a period of a cosine, this "
+                     "many wavelengths wide");
 }
 
 void check(const TypedWeighting& o, const CubeOptions& cube) {

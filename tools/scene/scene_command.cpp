@@ -31,7 +31,7 @@ std::vector<ms_io::DataColumn> named_columns_of(const ImageOptions& scene) {
   const std::vector<std::string_view> names = split_at_commas(scene.datacolumn);
   std::vector<ms_io::DataColumn> columns;
   for (std::size_t i = 0; i < scene.vis.size(); ++i)
-    columns.push_back({scene.vis[i], std::string(names[names.size() == 1 ? 0 : i]), {}});
+    columns.push_back({scene.vis[i], std::string(names[names.size() == 1 ? 0 : i]), {}, {}});
   return columns;
 }
 
@@ -39,7 +39,7 @@ std::vector<ms_io::DataColumn> named_columns_of(const ImageOptions& scene) {
 void check_values(const Options& o) {
   check(o.report.scene);
   if (o.report.scene.makes_mosaic())
-    refuse_option("gridder", "mosaic", "auto, standard or wide: what programs make of one pointing is compared");
+    refuse_option("gridder", "mosaic", "auto, standard or wide, since images of one pointing are compared");
   for (const std::string& kernel : o.report.kernels) choose_kernel({kernel, o.report.scene.gridding.kernel.folder});
   if (!(o.report.seconds >= 0 && std::isfinite(o.report.seconds)))
     throw std::invalid_argument("--seconds " + significant(o.report.seconds, 6) + ": expected 0 or more");
@@ -68,8 +68,8 @@ void write(const Options& o) {
 }  // namespace
 
 void add_scene_report(CLI::App& reports) {
-  CLI::App* command =
-      reports.add_subcommand("scene", "Error against run time for this data and image: kernels, widths, paddings, evaluations");
+  CLI::App* command = reports.add_subcommand(
+      "scene", "Error against run time for these data and this image, over kernels, widths, paddings and evaluations");
   const auto o = std::make_shared<Options>();
   o->report.scene.imagename = "image";
   declare_scene(*command, o->report.scene);
@@ -77,14 +77,13 @@ void add_scene_report(CLI::App& reports) {
                                     "Kernels to compare besides the usual ones: names or kernel-table files"));
   declare_kernel_folder(*command, o->report.scene.gridding.kernel.folder);
   command->add_flag("--quick", o->report.quick,
-                    "Fewer points and runs: an answer within two minutes for a million visibilities");
-  command->add_option(
-      "--seconds", o->report.seconds,
-      "Time for the runs of all points, of which there are more than two rounds (five without --quick) while they "
-      "fit; 0 means 75 with --quick and 600 without");
+                    "Compare fewer points in fewer runs; the report of a million visibilities is done within two minutes");
+  command->add_option("--seconds", o->report.seconds,
+                      "Seconds for the runs of all points together. Each point is run in two rounds with --quick, five "
+                      "without, and in more while this time lasts; 0 means 75 with --quick and 600 without");
   command
       ->add_option("--output", o->output,
-                   "Folder for index.html, SVG, CSV and report.json; a run that was stopped goes on there")
+                   "Folder for index.html, SVG, CSV and report.json; a run that was stopped goes on from there")
       ->required()
       ->type_name(folder_type)
       ->check(not_empty());

@@ -115,8 +115,8 @@ BOOST_AUTO_TEST_CASE(a_pass_without_usable_samples_is_an_error_that_counts_the_r
   const StreamedVisibilities streamed(source, {});
   BOOST_CHECK_EXCEPTION(weights_of_a_pass(streamed), NothingUsable, [](const std::exception& error) {
     return std::string(error.what()) ==
-           "no visibility is left of 10: 1 auto-correlations, 2 flagged, 3 not finite, 4 of zero weight; "
-           "expected one at least that is none of this";
+           "none of 10 visibilities can be used: 1 auto-correlations, 2 flagged, 3 not finite, 4 of zero weight; "
+           "expected at least one";
   });
 }
 

@@ -85,7 +85,7 @@ BOOST_AUTO_TEST_CASE(directions_are_in_the_frame_that_the_list_states) {
     BOOST_TEST(distance(read(list).at(0).position, expected) < 1e-15);
   }
   check_error("ra_deg,dec_deg,flux_jy,frame\n60,40,1,APP\n", {"line 2", "frame is 'APP', expected J2000, ICRS or B1950"});
-  check_error("l_arcsec,m_arcsec,flux_jy,frame\n1,2,3,ICRS\n", {"line 1", "a frame of no directions"});
+  check_error("l_arcsec,m_arcsec,flux_jy,frame\n1,2,3,ICRS\n", {"line 1", "column 'frame' stands without ra_deg and dec_deg"});
 }
 
 BOOST_AUTO_TEST_CASE(a_scale_is_the_full_width_at_half_maximum_whatever_the_coordinates) {

@@ -241,7 +241,7 @@ BOOST_AUTO_TEST_CASE(regions_of_a_range_are_of_its_planes_alone) {
 
 BOOST_AUTO_TEST_CASE(a_range_that_misses_the_only_plane_is_refused) {
   BOOST_TEST(refused("circle [[1pix, 2pix], 3pix], range=[3chan, 7chan]",
-                     "line 1: 'range=[3chan, 7chan]', expected one that reaches"));
+                     "line 1: found 'range=[3chan, 7chan]', expected one that reaches"));
   BOOST_TEST(mask_of("circle [[1pix, 2pix], 3pix], range=[0chan, 7chan]").at(2, 1) == 1);
 }
 

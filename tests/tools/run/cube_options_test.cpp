@@ -156,7 +156,7 @@ BOOST_AUTO_TEST_CASE(all_windows_count_for_the_end) {
 BOOST_AUTO_TEST_CASE(what_cannot_be_is_refused_in_one_line) {
   for (const auto& [options, named] : {std::pair{cube("10"), "--start 10: expected 0 to 9"},
                                        {cube("-1"), "--start -1"},
-                                       {cube("1.5GHz", "", 4), "hold no data; expected some within 1.3995 GHz to 1.4095 GHz"},
+                                       {cube("1.5GHz", "", 4), "hold no data; expected planes within 1.3995 GHz to 1.4095 GHz"},
                                        {cube("1.4GHz", "-500MHz", 9), "not positive"},
                                        {cube("", "0.01Hz"), "wider planes, or --nchan: it takes 1e+09 to the end"},
                                        {cube("somewhere"), "--start somewhere: expected a number of channels, a frequency"},

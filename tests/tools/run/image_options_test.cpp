@@ -187,9 +187,28 @@ BOOST_AUTO_TEST_CASE(states_belong_to_options_that_reach_clean) {
   for (const char* name : {"gain", "mask", "usemask", "deconvolver", "scales", "cyclefactor"})
     BOOST_TEST((ways.contains(name) && !values.contains(name)), name);
   BOOST_TEST(ways.size() == 22U);
-  for (const char* name : {"niter", "threshold", "nsigma", "nmajor", "savemodel", "restoringbeam", "verify", "threads",
-                           "memory", "quiet", "outformat", "restart", "imagename", "pbcor", "pblimit", "kernel-folder"})
+  for (const char* name :
+       {"niter", "threshold", "nsigma", "nmajor", "savemodel", "restoringbeam", "verify", "check-outside", "threads", "memory",
+        "quiet", "outformat", "restart", "imagename", "pbcor", "pblimit", "kernel-folder"})
     BOOST_TEST(!values.contains(name), name);
+}
+
+/// An option that changes no image is marked free_of_state, and is not here: a run that goes on may have another.
+BOOST_AUTO_TEST_CASE(states_are_refused_for_options_that_change_images_alone) {
+  CLI::App app;
+  app.option_defaults()->always_capture_default();
+  ImageOptions options;
+  declare(app, options);
+  app.parse("--vis a.ms --imagename a --imsize 64 32 --cell 1arcsec --niter 7");
+  const StateOptionValues values = state_option_values(app);
+  std::string names;
+  for (const auto& [name, value] : values.owners.items()) names += name + " ";
+  BOOST_TEST(names ==
+             "accuracy antenna beam-cut calcpsf calcres cell chanwidth datacolumn evaluation field gridder imsize intent "
+             "interpolation kernel kernel-width maxuv-l minuv-l mosweight nchan noise normtype npixels nterms observation "
+             "outframe padding perchanweightdensity phasecenter precision psf-accuracy psfphasecenter reffreq restfreq robust "
+             "sampling scan specmode spw start startmodel stokes taper-inner-tukey taper-tukey timerange usepointing uvrange "
+             "uvtaper veltype vis weighting weighting-rank-filter weighting-rank-filter-size ");
 }
 
 BOOST_AUTO_TEST_CASE(pixels_may_have_two_sides_that_are_equal) {

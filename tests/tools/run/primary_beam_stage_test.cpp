@@ -151,10 +151,12 @@ BOOST_AUTO_TEST_CASE(the_plan_tells_which_beam_was_taken) {
   BOOST_TEST(plan.code == 0);
   BOOST_TEST(plan.out.find("primary beam: 27.94 arcmin wide at half power at 1.5 GHz, where it is 0.2 or more; "
                            "EVLA: fits to its measured beams") != std::string::npos);
-  BOOST_TEST(run(wide_image("nowhere") + Arguments{"--dry-run"}).out.find("primary beam") == std::string::npos);
+  const Outcome without = run(wide_image("nowhere") + Arguments{"--dry-run"});
+  BOOST_TEST(without.out.find("primary beam:") == std::string::npos);
+  BOOST_TEST(without.out.find("; primary beam FWHM 27.9 arcmin at 1.5 GHz\n") != std::string::npos);
   const Outcome wrong = run(wide_image("nowhere") + Arguments{"--pblimit", "1.5"});
   BOOST_TEST(wrong.code == 2);
-  BOOST_TEST(wrong.err.find("--pblimit 1.5: expected a number between 0 and 1") != std::string::npos);
+  BOOST_TEST(wrong.err.find("--pblimit 1.5: expected a number between -1 and 1") != std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(pairs_weigh_as_their_samples_do) {

@@ -84,7 +84,7 @@ void RegionText::read_lines(const std::string& path, std::string_view text, regi
 
 void RegionText::look_for_pixels(const std::string& path, const std::vector<imager::Stokes>& stokes) {
   if (std::none_of(regions_.begin(), regions_.end(), [](const regions::Region& r) { return r.of_planes(); }))
-    throw std::runtime_error(lines_of(path, {regions_.front().line}) + "'" + regions_.front().planes +
+    throw std::runtime_error(lines_of(path, {regions_.front().line}) + "found '" + regions_.front().planes +
                              "', expected planes of the image, corr of " + stokes_names(stokes) + " and range within its " +
                              std::to_string(channels_) + (channels_ == 1 ? " channel" : " channels") +
                              ": no region of the file is of any");
@@ -96,7 +96,11 @@ void RegionText::look_for_pixels(const std::string& path, const std::vector<imag
     if (region.of_planes() && region.channels.beyond)
       doubts_.push_back(lines_of(path, {region.line}) + "the region of " + region.planes +
                         " names channels beyond the image's last, " + std::to_string(channels_ - 1) + "chan");
-    if (!pixels) doubts_.push_back(lines_of(path, {region.line}) + "the region holds the centre of no pixel of the image");
+    if (pixels) continue;
+    const regions::Point centre = regions::centre_of(region.shape);
+    doubts_.push_back(lines_of(path, {region.line}) + "the region holds the centre of no pixel of the image, " +
+                      std::to_string(width_) + " × " + std::to_string(height_) + " pixels: its own is at column " +
+                      significant(centre.column, 6) + ", row " + significant(centre.row, 6));
   }
 }
 

@@ -111,6 +111,17 @@ Polygon polygon_of(const Rectangle& r) {
   return polygon;
 }
 
+Point centre_of(const Shape& shape) {
+  if (const auto* ellipse = std::get_if<Ellipse>(&shape.outline)) return ellipse->centre;
+  const std::vector<Point>& corners = std::get<Polygon>(shape.outline).corners;
+  Point centre;
+  for (const Point& corner : corners) {
+    centre.column += corner.column / static_cast<double>(corners.size());
+    centre.row += corner.row / static_cast<double>(corners.size());
+  }
+  return centre;
+}
+
 void for_each_pixel(const Shape& shape, int width, int height, const std::function<void(int row, int column)>& visit) {
   const Interval rows = std::visit([](const auto& o) { return rows_of(o); }, shape.outline);
   const auto [first, last] = pixels_in(rows, height);

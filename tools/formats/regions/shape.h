@@ -53,6 +53,9 @@ struct Shape {
   std::optional<Sector> sector = {};
 };
 
+/// The centre of the outline: a polygon's is the mean of its corners.
+Point centre_of(const Shape& shape);
+
 /// Calls `visit` once for each pixel of an image that the shape holds: those whose centres lie within the outline or on it,
 /// and not within the hole nor on its border. A centre within a millionth of a pixel of a border lies on it; angles and frames
 /// are rounded by less.

@@ -11,7 +11,7 @@ namespace misfit::tools::regions {
 void refuse(std::string_view text, const std::string& expected) {
   constexpr std::size_t most = 100;
   const std::string shown = text.size() > most ? std::string(text.substr(0, most)) + "…" : std::string(text);
-  throw std::runtime_error("'" + shown + "', expected " + expected);
+  throw std::runtime_error("found '" + shown + "', expected " + expected);
 }
 
 std::string small_letters(std::string_view text) {

@@ -195,9 +195,9 @@ def _give_data(words, p):
         if any(values):
             words.give(name, *values)
     column = p["datacolumn"]
-    if not isinstance(column, str) or column not in _COLUMNS:
-        _refuse("datacolumn", column, "one of " + ", ".join(map(repr, _COLUMNS)))
-    words.give("datacolumn", _COLUMNS[column])
+    if not isinstance(column, str) or not column:
+        _refuse("datacolumn", column, "one of " + ", ".join(map(repr, _COLUMNS)) + ", or a column's name")
+    words.give("datacolumn", _COLUMNS.get(column, column))
 
 
 def _give_image(words, p):
@@ -722,7 +722,7 @@ def tclean(
     field, spw, timerange, uvrange, antenna, scan, observation, intent : str or list of str
         What is imaged, as CASA's tasks take it: for all sets, or for each.
     datacolumn : str
-        "corrected" (or data where a set has none), "data" or "model".
+        "corrected" (or data where a set has none), "data", "model", or a column's name.
     imagename : path
         What the names of images begin with.
     imsize : int or list of int
