@@ -160,8 +160,8 @@ class MeasurementSet : public imager::VisibilitySource {
   /// order in which blocks hold rows. Dishes on alt-azimuth mounts turn by it; it is 0 for other mounts. Reads times, fields
   /// and antennas of all rows. Throws std::runtime_error when they cannot be read.
   std::vector<float> zenith_turns() const;
-  /// Summaries of all sets, in the order in which they were observed; of what was read when they were opened. Throws
-  /// std::runtime_error when FIELD cannot be read.
+  /// Summaries of all sets, in the order in which they were observed. Reads FIELD, OBSERVATION, and the times of two rows of
+  /// each. Throws std::runtime_error when these cannot be read.
   std::vector<SetSummary> summaries() const;
   /// Bounds at the highest channel selected, of rows with finite UVW. Reads UVW, antennas and FLAG_ROW alone. Throws
   /// std::runtime_error when they cannot be read.

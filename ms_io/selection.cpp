@@ -63,10 +63,7 @@ class BlockBuilder {
     ++result_.setups[setup].rows_of_field[at.field];
     TimedRow& first = first_of_field_.emplace(at.field, at).first->second;
     if (at.before(first)) first = at;
-    if (at.timed() && at.time_s >= last_s_) {
-      last_s_ = at.time_s;
-      result_.last_row = at.row;
-    }
+    if (at.timed() && (!last_timed_ || last_timed_->before(at))) last_timed_ = at;
     BlockRows& block = pending_[setup];
     append(block.runs, at.row);
     if (++block.rows >= rows_per_block_[setup]) flush(setup);
@@ -80,6 +77,7 @@ class BlockBuilder {
       if (first == nullptr || row.before(*first)) first = &row;
     }
     if (first != nullptr) result_.first_row = first->row;
+    if (last_timed_) result_.last_row = last_timed_->row;
     return std::move(result_);
   }
 
@@ -132,7 +130,7 @@ class BlockBuilder {
   RowUse use_;
   SelectedRows result_;
   std::map<int, TimedRow> first_of_field_;
-  double last_s_ = 0;
+  std::optional<TimedRow> last_timed_;
   std::map<Key, std::size_t> setup_;
   std::map<int, double> reference_frequency_hz_;  ///< by DATA_DESC_ID
   std::vector<BlockRows> pending_;                ///< [setup]

@@ -68,7 +68,7 @@ struct SelectedRows {
   std::uint64_t rows = 0;
   std::uint64_t samples = 0;                         ///< rows × selected channels
   std::uint64_t first_row = 0;                       ///< the earliest row selected that has a time, wherever it stands
-  std::uint64_t last_row = 0;                        ///< a latest row selected that has a time; 0 where none has
+  std::optional<std::uint64_t> last_row;             ///< the latest row selected that has a time
   std::map<int, std::uint64_t> first_row_of_field;   ///< the earliest, for the fields that have selected rows
   std::map<int, TimeSpan> moving;                    ///< the fields whose phase centres move, or that follow a moving body
   double moved_rad = 0;                              ///< the farthest that one of them moves

@@ -35,7 +35,8 @@ SetSummary summary_of(const OpenSet& open_set) {
     summary.all_windows = set.spectralWindow().nrow();
     const FieldDirections directions(set, open_set.path);
     for (const auto& [field, row] : selected.first_row_of_field) summary.fields.push_back({field, directions.name(field)});
-    const Integration first = integration_of(set, selected.first_row), last = integration_of(set, selected.last_row);
+    if (!selected.last_row) return;
+    const Integration first = integration_of(set, selected.first_row), last = integration_of(set, *selected.last_row);
     summary.start_utc = utc_text(first.start_s);
     summary.end_utc = utc_text(last.end_s);
     summary.length_s = last.end_s - first.start_s;

@@ -67,7 +67,10 @@ std::string wanted(const CLI::Option& option, const std::string& value) {
   if (type.find("FLOAT") != std::string::npos) return several ? "numbers" : "a number";
   if (type.find("UINT") != std::string::npos)
     return whole + " from 0 to " + std::to_string(std::numeric_limits<unsigned>::max());
-  const bool too_large = !value.empty() && value.find_first_not_of("+-0123456789,") == std::string::npos;
+  // Text of digits alone, or lists of it, can only be too large.
+  const std::size_t digits = value.find_first_of("0123456789");
+  const bool too_large = digits <= 1 && value.size() > 9 &&
+                         value.find_first_not_of(several ? "0123456789," : "0123456789", digits) == std::string::npos;
   return whole + (too_large ? " of magnitude " + std::to_string(std::numeric_limits<int>::max()) + " at most" : "");
 }
 

@@ -45,12 +45,13 @@ CLI::App* add_report(CLI::App& reports, const std::string& name, const std::stri
 }
 
 void add_kernel_report(CLI::App& reports) {
-  const auto paper = std::make_shared<bool>(false);
+  const auto o = std::make_shared<KernelReportOptions>();
   CLI::App* command =
       add_report(reports, "kernels",
                  "Gridding functions: the figures of Ye et al. 2020 with our own numbers, and other functions beside them",
-                 [paper](ProgressLine& progress) { return kernel_report(progress, *paper); });
-  command->add_flag("--paper", *paper,
+                 [o](ProgressLine& progress) { return kernel_report(*o, progress); });
+  command->add_flag("--quick", o->quick, "Leave out the comparison with other families, which takes most of the time");
+  command->add_flag("--paper", o->paper,
                     "Repeat the paper's experiments too: compare gridded images and visibilities with direct sums");
 }
 

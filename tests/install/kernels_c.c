@@ -16,7 +16,7 @@ int main(void) {
   int width = 0, r;
   MisfitKernel* kernel = NULL;
   if (misfit_kernel_solve("least-misfit", 21, 0.25, &kernel) != MISFIT_KERNEL_BAD_ARGUMENT || kernel != NULL) return 1;
-  if (strstr(misfit_kernel_last_error(), "width 21 not in [1, 20]") == NULL) return 2;
+  if (strstr(misfit_kernel_last_error(), "width 21, expected 1 to 20") == NULL) return 2;
   if (misfit_kernel_solve("least-misfit", 7, 0.25, &kernel) != MISFIT_KERNEL_OK) return 3;
   if (misfit_kernel_width(kernel, &width) != MISFIT_KERNEL_OK || width != 7) return 4;
   if (misfit_kernel_mean_error(kernel, &mean) != MISFIT_KERNEL_OK || !(mean < 1.5e-14)) return 5;

@@ -135,7 +135,7 @@ BOOST_AUTO_TEST_CASE(each_set_may_have_a_data_column_of_its_own) {
   const std::string missing = error_of([&] { both(first, second); });
   BOOST_TEST(contains(missing, second.path() + " has no visibilities in a column 'DATA'"));
   BOOST_TEST(
-      contains(error_of([&] { both(first, second, "data,model,DATA"); }), "are 3; expected one, or one for each of 2 sets"));
+      contains(error_of([&] { both(first, second, "data,model,DATA"); }), "names 3 columns; expected one, or one for each of 2 sets"));
 }
 
 BOOST_AUTO_TEST_CASE(an_error_names_the_set_it_is_in) {

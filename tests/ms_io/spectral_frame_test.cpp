@@ -323,7 +323,7 @@ BOOST_AUTO_TEST_CASE(antennas_that_stand_far_from_the_telescope_of_that_name_are
     const bool whole_name = name.size() > 3 && name != "VLA-sim";
     BOOST_TEST(remarks.size() == (whole_name ? 1U : 0U), name);
     for (const std::string& remark : remarks)
-      BOOST_TEST(contains(remark, "TELESCOPE_NAME is '" + name + "', which casacore has "), remark);
+      BOOST_TEST(contains(remark, "TELESCOPE_NAME is '" + name + "', which casacore places "), remark);
   }
 }
 

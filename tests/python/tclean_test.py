@@ -355,8 +355,8 @@ class GoingOn(Sets):
             self.assertIn(".image", self.files("beside" + end))
 
     def test_images_that_are_to_be_there_are_named(self):
-        self.assertIn("refused.psf is not there", self.refusal(RuntimeError, calcpsf=False))
-        self.assertIn("refused.residual.tt0 is not there", self.refusal(RuntimeError, calcres=False, deconvolver="mtmfs", vis=self.sets))
+        self.assertIn("refused.psf does not exist", self.refusal(RuntimeError, calcpsf=False))
+        self.assertIn("refused.residual.tt0 does not exist", self.refusal(RuntimeError, calcres=False, deconvolver="mtmfs", vis=self.sets))
         self.tclean("half", niter=2, deconvolver="mtmfs", outformat="fits")
         os.remove(self.name("half.model.tt1.fits"))
         self.assertIn("half.model.tt1 is not there: expected it beside",

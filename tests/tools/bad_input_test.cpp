@@ -126,7 +126,7 @@ BOOST_AUTO_TEST_CASE(unknown_options_and_missing_ones_are_wrong_usage) {
   check_refused(scene.image() + Arguments{"--cell", "2arcsec"}, 2, {"--cell"}, scene.out);
   check_refused({"image", "--vis", snapshot()}, 2, {"is required"}, scene.out);
   check_refused(scene.image() + Arguments{"--restart=perhaps"}, 2, {"--restart perhaps: expected true or false"}, scene.out);
-  check_refused({"image", "--imsize"}, 2, {"--imsize: expected 1 to 2 values, found none"}, scene.out);
+  check_refused({"image", "--imsize"}, 2, {"--imsize --quiet: expected whole numbers"}, scene.out);
   check_refused({"image", "--imsize", "1", "2", "3"}, 2, {"--imsize: expected 1 to 2 values, found 3"}, scene.out);
   check_refused(scene.image() + Arguments{"--niter", "1", "--niter", "2"}, 2, {"--niter: expected 1 value, found 2"},
                 scene.out);
@@ -143,9 +143,9 @@ BOOST_AUTO_TEST_CASE(data_that_cannot_be_used_are_named) {
                 {"cannot read " + scene.out + ": it is no casacore image; expected the folder of one"}, scene.out);
   scene.unusable("--datacolumn", "CORRECTED_DATA", "columns with visibilities: DATA");
   scene.unusable("--datacolumn", "FLAG", "columns with visibilities: DATA");
-  scene.unusable("--field", "nosuch", "No match");
-  scene.unusable("--field", "7", "no match");
-  scene.unusable("--spw", "3", "No match");
+  scene.unusable("--field", "nosuch", "the set has no such field; expected some of 0 'SIMULATED'");
+  scene.unusable("--field", "7", "the set has no such field");
+  scene.unusable("--spw", "3", "the set has no such spectral window; expected some of 0 (4 GHz, 1 channel)");
   scene.unusable("--spw", "0:~", "Parse error");
   scene.unusable("--config", scene.folder / "none.ini", "cannot read");
 }

@@ -67,7 +67,7 @@ BOOST_AUTO_TEST_CASE(what_a_global_line_cannot_mean_is_refused_there_whatever_us
   for (const char* keyword : {"corr=[I, S]", "coord=AZEL", "range=[1chan, 2GHz]", "range=[7, 8]", "range=[7chan, 3chan]",
                               "range=[1GHz, -2GHz]", "frame=SUN", "veltype=SLOW", "restfreq=7", "colour=red"}) {
     const std::string name = std::string(keyword).substr(0, std::string(keyword).find('='));
-    const std::string shown = name == "frame" || name == "colour" ? "line 2: " : "line 2: '" + std::string(keyword) + "'";
+    const std::string shown = name == "frame" || name == "colour" ? "line 2: " : "line 2: found '" + std::string(keyword) + "'";
     for (const std::string& text : {box + "global " + keyword, box + "global color=red, " + keyword + "\n" + box})
       BOOST_TEST(refused(text, shown), keyword);
   }

@@ -132,7 +132,7 @@ BOOST_AUTO_TEST_CASE(pointings_and_beams_that_are_none_are_refused) {
   for (const auto& [text, expected] : {std::pair("", "lists no pointing"),
                                        {"ra,dec\n", "line 1: found 'ra,dec', expected the names"},
                                        {"ra_deg,dec_deg\n1,2\n1,95\n", "line 3: found '1,95', expected a right ascension"},
-                                       {"ra_deg,dec_deg\n1\n", "line 2: '1'"}}) {
+                                       {"ra_deg,dec_deg\n1\n", "line 2: found '1'"}}) {
     std::ofstream(list) << text;
     says(refusal(simulate + Arguments{"--pointings", list}), expected);
   }

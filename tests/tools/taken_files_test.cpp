@@ -90,7 +90,7 @@ BOOST_AUTO_TEST_CASE(every_term_is_compared) {
   for (const std::string& kind : kinds) {
     copy(folder / "a", folder / "b", kinds);
     fs::remove(folder / "b" + kind + ".fits");
-    check_refused(image(folder / "b", terms + taken), "b" + kind + " is not there");
+    check_refused(image(folder / "b", terms + taken), "b" + kind + " does not exist");
     copy(folder / "other", folder / "b", {kind});
     check_refused(image(folder / "b", terms + taken), "b" + kind + ".fits is ");
     for (const std::string& each : kinds) fs::remove(folder / "b" + each + ".fits");

@@ -22,7 +22,7 @@ constexpr std::array<Part, 7> parts{{{"the paper's statements", paper_section},
 
 }  // namespace
 
-Report kernel_report(ProgressLine& progress, bool with_experiments) {
+Report kernel_report(const KernelReportOptions& options, ProgressLine& progress) {
   Report report{.title = "Gridding functions",
                 .introduction =
                     "Least-misfit gridding functions (Ye, Gull, Tan & Nikolic 2020, MNRAS 491, 1146) and others, judged by the "
@@ -31,12 +31,13 @@ Report kernel_report(ProgressLine& progress, bool with_experiments) {
                 .sections = {}};
   SolvedKernels solved;
   for (const Part& part : parts) {
+    if (options.quick && part.make == rivals_section) continue;
     progress.begin(part.stage);
     progress.update(report.sections.size(), parts.size());
     report.sections.push_back(part.make(solved));
     progress.end();
   }
-  if (with_experiments)
+  if (options.paper)
     for (const ReportSection& section : paper_experiments(solved, progress)) report.sections.push_back(section);
   return report;
 }

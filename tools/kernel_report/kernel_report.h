@@ -6,9 +6,14 @@
 
 namespace misfit::tools {
 
+struct KernelReportOptions {
+  bool quick = false;  ///< without rivals, whose minimax functions take most of the time
+  bool paper = false;  ///< with the experiments of paper_experiments.h
+};
+
 /// The figures and tables of Ye, Gull, Tan & Nikolic 2020 (MNRAS 491, 1146) from our own numbers, and what they did not show,
-/// all computed when called; `with_experiments` adds those of paper_experiments.h. Throws Interrupted.
-Report kernel_report(ProgressLine& progress, bool with_experiments);
+/// all computed when called. Throws Interrupted.
+Report kernel_report(const KernelReportOptions& options, ProgressLine& progress);
 
 /// The report's sections.
 ReportSection paper_section(SolvedKernels& solved);         ///< statements of the paper beside our numbers

@@ -8,7 +8,7 @@
 
 namespace misfit::tools {
 
-/// What the paper says, by subject, beside our numbers.
+/// The paper's statements, by subject, beside our numbers.
 std::vector<Statement> function_statements(SolvedKernels& solved);  ///< §2.2, §3, §4.1, appendices A to C
 std::vector<Statement> table_statements(SolvedKernels& solved);     ///< §6.1, §6.2, appendix F
 

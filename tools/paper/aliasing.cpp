@@ -150,7 +150,8 @@ AliasLevels alias_levels(const kernels::Kernel& kernel) {
   AliasLevels levels;
   for (int n = 1; n <= fields; ++n) {
     const Eigen::VectorXd level = levels_of_aliases(kernel, (folded.array() + n).matrix());
-    levels.rms += 2 * level.squaredNorm() / places;
+    const double ends = (level[0] * level[0] + level[places - 1] * level[places - 1]) / 2;  // count half in a mean over x
+    levels.rms += 2 * (level.squaredNorm() - ends) / (places - 1);
     levels.max = std::max(levels.max, level.maxCoeff());
   }
   levels.rms = std::sqrt(levels.rms);

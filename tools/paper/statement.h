@@ -24,7 +24,7 @@ std::string verdict(bool agrees, const std::string& why);
 /// by width.
 Statement hundredfold(const std::string& where, const std::string& what, const std::map<int, double>& ratio_by_width);
 
-/// A row for each.
+/// A table with a row for each statement.
 DataTable statements_table(const std::string& name, const std::string& title, const std::string& caption,
                            const std::vector<Statement>& statements);
 

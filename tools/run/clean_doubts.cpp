@@ -21,7 +21,7 @@ std::string divergence(const imager::CleanReport& report, const CleanedImage& im
   return std::string("CLEAN diverged") + against_divergence + (image.one_of_many ? "" : sidelobe);
 }
 
-/// The cycles through which the model that was kept did not come, since the residual had grown.
+/// Returns the cycles that were taken back because the residual had grown.
 std::vector<const imager::MajorCycle*> cycles_taken_back(const imager::CleanReport& report) {
   std::vector<const imager::MajorCycle*> taken_back;
   std::size_t kept = report.kept;
@@ -45,8 +45,8 @@ std::string growth(const imager::CleanReport& report, const CleanedImage& image)
 }
 
 /// A component has a flux and a place, three numbers, and a visibility has two. Neighbouring visibilities see alike of the
-/// sources, so that these need far fewer components, but noise does not: more components than visibilities certainly fit noise.
-/// Those of a start model were not found here.
+/// sources, so that these need far fewer components, but noise does not: more components than visibilities fit noise, or are
+/// arbitrary. Components of a start model are not judged, since they were not found here.
 std::string excess(const TypedClean& options, const CleanedImage& image) {
   if (image.components <= image.visibilities || !options.startmodel.empty()) return "";
   const auto count = [](std::uint64_t number) { return grouped(static_cast<long long>(number)); };
@@ -54,20 +54,24 @@ std::string excess(const TypedClean& options, const CleanedImage& image) {
       count(image.components) + " distinct components in " + count(image.visibilities) + " visibilities";
   const bool masked = !options.mask.empty() || options.usemask == "auto";
   return "CLEAN found " + (image.one_of_many ? "more distinct components than there are visibilities" : figures) +
-         ": it fits noise, and the noise stated is too low; expected " +
+         ", more than these determine: it fits noise, and the noise found is too low; expected " +
          (masked ? "a smaller mask" : "a --mask around the sources, --usemask auto") + " or a larger --nsigma";
 }
 
-/// What an automatic mask takes that stayed empty: the threshold that decides, and the option that lets more in.
+/// Says which threshold kept an automatic mask empty, and which option lets more in.
 std::string mask_threshold_words(const imager::CleanReport& report, const TypedClean& o, const CleanedImage& image) {
   const imager::MaskExtension& masked = report.cycles.front().masked;
   const std::string regions =
       o.minbeamfrac > 0 ? " of --minbeamfrac " + significant(o.minbeamfrac, 3) + " of the beam or more" : "";
   const std::string level = image.one_of_many ? "" : with_prefix(masked.threshold_jy, "Jy/beam", 4) + ", ";
   const std::string takes = "it takes regions" + regions + " above " + level;
-  if (!masked.by_sidelobes)
-    return takes + "--noisethreshold " + significant(o.noisethreshold, 3) + " times the noise; expected a " +
-           (masked.regions > 0 ? "smaller --minbeamfrac" : "lower --noisethreshold");
+  if (!masked.by_sidelobes) {
+    const bool negative = masked.regions == 0 && report.cycles.front().peak_residual_jy > masked.threshold_jy;
+    return takes + "--noisethreshold " + significant(o.noisethreshold, 3) + " times the noise; expected " +
+           (negative ? "a --negativethreshold, since the brightest pixel is negative"
+            : masked.regions > 0 && masked.pruned == masked.regions ? "a smaller --minbeamfrac"
+                                                                    : "a lower --noisethreshold");
+  }
   // Half the peak, or half of what was asked where regions were too small.
   const double lower = std::min(0.5 / report.max_sidelobe, o.sidelobethreshold / 2);
   return takes + "--sidelobethreshold " + significant(o.sidelobethreshold, 3) + " times the PSF's largest sidelobe" +

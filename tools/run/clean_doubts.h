@@ -10,12 +10,12 @@
 
 namespace misfit::tools {
 
-/// What was cleaned: the image of a channel in one Stokes parameter.
+/// The image that was cleaned: a channel in one Stokes parameter.
 struct CleanedImage {
   std::size_t components = 0;      ///< of the model, each at a place and scale of its own
   std::uint64_t visibilities = 0;  ///< of which the image is made
-  bool limited = false;            ///< whether components may lie in a part of it alone, with or without an automatic mask
-  bool one_of_many = false;        ///< whether sentences leave figures out, so that other planes have them in the same words
+  bool limited = false;            ///< true if components may lie in a part of it alone, with or without an automatic mask
+  bool one_of_many = false;        ///< true if sentences leave figures out, so that other planes have them in the same words
 };
 
 /// Sentences that warn of a CLEAN that ended: it diverged, or cycles of it were taken back; it has more components than

@@ -92,7 +92,7 @@ imager::Plan lines_of(const ms_io::SetSummary& set, const std::vector<std::strin
            of_all(windows.size(), set.all_windows) + (frame.empty() ? "" : ", frequencies in " + frame)}};
 }
 
-/// One of several sets.
+/// The line of one set among several.
 imager::Decision line_of(const ms_io::SetSummary& set, const std::vector<std::string>& windows) {
   return {"set " + set.path, telescope_words(set) + ", observed " + time_words(set),
           "fields " + field_list(set) + "; spectral windows " + listed(windows)};

@@ -100,7 +100,7 @@ std::string keeping_cell_words(const imager::UvwReach& reach) {
 }
 
 std::string outside_grid_forecast(const imager::UvwReach& reach) {
-  return "samples of the longest baselines lie beyond 1/(2 cell) and would be left out; " + keeping_cell_words(reach);
+  return "samples of the longest baselines lie beyond 1/(2 cell) and may be left out; " + keeping_cell_words(reach);
 }
 
 std::string outside_grid_warning(std::uint64_t samples, const imager::UvwReach& reach) {

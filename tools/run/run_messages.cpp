@@ -28,7 +28,7 @@ std::string restored_text(const imager::Peak& peak, const imager::ImageGeometry&
          std::to_string(peak.row);
 }
 
-/// What CLEAN found of a Stokes parameter, and the restored image.
+/// Two lines: CLEAN's components of one Stokes parameter, and the peak of the restored image.
 std::string clean_lines(const StokesReport& of, const imager::ImageGeometry& geometry, const std::string& before) {
   return before + grouped(of.clean->iterations) + " components, model flux " +
          with_prefix(of.clean->final_state().model_flux_jy, "Jy", 4) + "; " + of.clean->stop_reason + "\n" + before +

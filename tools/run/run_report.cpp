@@ -142,6 +142,7 @@ json restored_json(const StokesReport& of, const imager::ImageGeometry& geometry
   return {{"peak_jy", number(of.brightest.value)},
           {"ra_deg", at ? json(at->ra_rad / degree) : json()},
           {"dec_deg", at ? json(at->dec_rad / degree) : json()},
+          {"frame", at ? json(at->frame) : json()},
           {"column", of.brightest.column},
           {"row", of.brightest.row}};
 }

@@ -6,7 +6,7 @@
 
 namespace misfit::tools {
 
-/// The lines that a command prints once it has written a column: "a.ms: DATA − model of 3 782 visibilities in 2 886 of 3 782
+/// The lines that a command prints once it has written a column: "a.ms: DATA − model of 5 772 visibilities in 2 886 of 3 782
 /// rows written to RESIDUAL_DATA", and one each on rows that an earlier run wrote and on rows whose UVW are not finite.
 std::string written_words(const std::string& path, const ms_io::ModelColumn& column, const ms_io::ModelWriteReport& report);
 

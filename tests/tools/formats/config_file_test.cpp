@@ -85,7 +85,7 @@ BOOST_AUTO_TEST_CASE(errors_name_the_file_the_line_and_the_option) {
   check_error("number=1\nnmae=a\n", ", line 2: 'nmae' is no option of misfit image");
   check_error("[image]\n", ", line 1: '[image]' has no =, expected name = value");
   check_error("config=other.ini\n", ", line 1: 'config' is no option of misfit image");
-  check_error("number=1\nname=a\nname=b\n", ", line 3: 'name' stands in the file twice");
+  check_error("number=1\nname=a\nname=b\n", ", line 3: 'name' stands in the file twice, expected it once");
   check_error("help=true\n", ", line 1: 'help' is no option of misfit image");
   check_error("number=1\nname=\x1b[31m\n", ", line 2: it has the control character 0x1b, expected text");
 }

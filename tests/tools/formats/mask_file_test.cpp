@@ -142,8 +142,8 @@ BOOST_AUTO_TEST_CASE(regions_are_cut_at_the_edges_of_the_image) {
 }
 
 BOOST_AUTO_TEST_CASE(what_cannot_be_read_is_refused_by_its_line) {
-  BOOST_TEST(refused("#CRTF\npoly [[1pix, 2pix], [3pix, 4pix]]", "line 2: 'poly"));
-  BOOST_TEST(refused("circle [[1pix, 2pix]]", "line 1: 'circle"));
+  BOOST_TEST(refused("#CRTF\npoly [[1pix, 2pix], [3pix, 4pix]]", "line 2: found 'poly"));
+  BOOST_TEST(refused("circle [[1pix, 2pix]]", "line 1: found 'circle"));
   BOOST_TEST(refused("circle [[1pix, 2pix], 3]", "'3', expected a length"));
   BOOST_TEST(refused("circle [[1pix, 2pix], 0pix]", "expected a length above 0"));
   BOOST_TEST(refused("circle [[1pix, 2deg], 3pix]", "both in pixels or both on the sky"));

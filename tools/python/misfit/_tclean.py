@@ -722,7 +722,7 @@ def tclean(
     field, spw, timerange, uvrange, antenna, scan, observation, intent : str or list of str
         What is imaged, as CASA's tasks take it: for all sets, or for each.
     datacolumn : str
-        "corrected" (or data where a set has none), "data", "model", or a column's name.
+        "corrected" (or data where a set has none), "data" or "observed", "model", or a column's name.
     imagename : path
         What the names of images begin with.
     imsize : int or list of int

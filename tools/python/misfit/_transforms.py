@@ -24,7 +24,7 @@ def _options(epsilon, single, double_precision_accumulation, **others):
 
 
 IN_PYTHON = {"--kernel-width": "kernel_width", "--padding": "sigma_min and sigma_max", "accuracy": "epsilon",
-             "padding from": "sigma_min and sigma_max"}
+             "paddings from": "sigma_min and sigma_max"}
 
 
 def _planned(uvw, freq, mask, options):
