@@ -134,8 +134,8 @@ BOOST_AUTO_TEST_CASE(each_set_may_have_a_data_column_of_its_own) {
   BOOST_TEST(read_all(both(first, second, "data,OTHER_DATA")).counts.used == 2 * rows * channels);
   const std::string missing = error_of([&] { both(first, second); });
   BOOST_TEST(contains(missing, second.path() + " has no visibilities in a column 'DATA'"));
-  BOOST_TEST(
-      contains(error_of([&] { both(first, second, "data,model,DATA"); }), "names 3 columns; expected one, or one for each of 2 sets"));
+  BOOST_TEST(contains(error_of([&] { both(first, second, "data,model,DATA"); }),
+                      "names 3 columns; expected one, or one for each of 2 sets"));
 }
 
 BOOST_AUTO_TEST_CASE(an_error_names_the_set_it_is_in) {

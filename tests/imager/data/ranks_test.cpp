@@ -176,7 +176,8 @@ BOOST_AUTO_TEST_CASE(samples_that_nobody_can_use_are_counted_over_all_ranks) {
     make_dirty_images(streamed, transform, {.with_psf = true}, {});
   }),
                         NothingUsable, [](const NothingUsable& error) {
-                          return std::string(error.what()).find("none of 459 visibilities can be used: 459 flagged") != std::string::npos;
+                          return std::string(error.what()).find("none of 459 visibilities can be used: 459 flagged") !=
+                                 std::string::npos;
                         });
 }
 
