@@ -63,8 +63,7 @@ BOOST_AUTO_TEST_CASE(more_components_than_visibilities_fit_noise) {
   TypedClean options;
   BOOST_TEST(doubts_of(calm_report(), options, {3024, 2639}) ==
              "CLEAN found 3\u2009024 distinct components in 2\u2009639 visibilities, more than these determine: it fits noise, "
-             "and the noise found is too "
-             "low; expected a --mask around the sources, --usemask auto or a larger --nsigma\n");
+             "and the noise found is too low; expected a --mask around the sources, --usemask auto or a larger --nsigma\n");
   options.usemask = "auto";
   BOOST_TEST(has(doubts_of(calm_report(), options, {3024, 2639}), "expected a smaller mask or a larger --nsigma"));
   options.startmodel = {"of_another.model.fits"};  // its pixels were not found here
