@@ -27,11 +27,22 @@ void refuse_several(CLI::App& command, const imager::Ranks& ranks) {
   });
 }
 
-/// Lets options take whole numbers from other programs' arithmetic, too, such as 512.0.
-void take_whole_numbers(CLI::App& command) {
-  for (CLI::Option* option : command.get_options())
-    if (option->get_type_name().find("INT") != std::string::npos) option->transform(whole_number());
-  for (CLI::App* sub : command.get_subcommands({})) take_whole_numbers(*sub);
+/// The parser's words on a value that is no number, before "--option = value".
+const std::string conversion_failed = "Could not convert: ";
+
+/// Lets options take whole numbers from other programs' arithmetic, too, such as 512.0, and refuses '' as a number, which the
+/// parser takes for 0.
+void take_numbers(CLI::App& command) {
+  for (CLI::Option* option : command.get_options()) {
+    const std::string type = option->get_type_name();
+    if (type.find("INT") != std::string::npos) option->transform(whole_number());
+    if (type.find("INT") != std::string::npos || type.find("FLOAT") != std::string::npos)
+      option->check([name = option->get_name()](const std::string& value) -> std::string {
+        if (value.empty()) throw CLI::ConversionError(conversion_failed + name + " = ", CLI::ExitCodes::ConversionError);
+        return "";
+      });
+  }
+  for (CLI::App* sub : command.get_subcommands({})) take_numbers(*sub);
 }
 
 /// The command that was called, or the last one before a word that is no command.
@@ -81,10 +92,9 @@ std::string in_brackets(const std::string& help) {
 
 /// The parser's message on a value that is no number, "Could not convert: --option = value", with what was expected.
 std::string conversion_message(const std::string& said, const CLI::App& command) {
-  const std::string before = "Could not convert: ";
-  const std::size_t equals = said.find(" = ");
-  if (said.rfind(before, 0) != 0 || equals == std::string::npos) return said;
-  const std::string name = said.substr(before.size(), equals - before.size()), value = said.substr(equals + 3);
+  const std::size_t equals = said.find(" = "), begin = conversion_failed.size();
+  if (said.rfind(conversion_failed, 0) != 0 || equals == std::string::npos) return said;
+  const std::string name = said.substr(begin, equals - begin), value = said.substr(equals + 3);
   const CLI::Option* option = command.get_option_no_throw(name);
   if (option == nullptr) return said;
   return name + ' ' + (value.empty() ? "''" : value) + ": expected " + wanted(*option, value) +
@@ -155,7 +165,7 @@ std::unique_ptr<CLI::App> make_program(const CommandCall& call) {
   add_kernel_command(*program);
   add_report_command(*program);
   for (CLI::App* command : program->get_subcommands({})) refuse_several(*command, call.ranks);
-  take_whole_numbers(*program);
+  take_numbers(*program);
   return program;
 }
 

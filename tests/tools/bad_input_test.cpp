@@ -77,6 +77,8 @@ BOOST_AUTO_TEST_CASE(options_with_impossible_values_are_wrong_usage) {
   scene.usage("--imsize", "-5", "expected 1 to 65536");
   scene.usage("--imsize", "65537", "expected 1 to 65536");
   scene.usage("--imsize", "64.5", "");
+  for (const char* number : {"--niter", "--nsigma", "--accuracy", "--gain", "--memory", "--threads", "--imsize"})
+    scene.usage(number, "", std::string(number) + " '': expected ");
   scene.usage("--cell", "0", "expected an angle above 0");
   scene.usage("--cell", "-1arcsec", "expected an angle above 0");
   scene.usage("--cell", "1parsec", "expected a number with a unit");

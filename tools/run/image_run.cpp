@@ -623,8 +623,8 @@ class ImageRun : private ChannelSink {
                            json_text(report_.options),
                            [this](const std::string& sentence) { progress_.say(sentence); },
                            o_.taylor.nterms > 1 ? taylor_expansion(o_.taylor, header_.observation) : imager::TaylorExpansion()};
-    const std::string words = tools::save_model(
-        o_, model, ranks_, [this](std::uint64_t done, std::uint64_t total) { progress_.update(done, total); });
+    std::string words = tools::save_model(o_, model, ranks_,
+                                          [this](std::uint64_t done, std::uint64_t total) { progress_.update(done, total); });
     progress_.end();
     return words;
   }
