@@ -140,8 +140,8 @@ void parse_alone(const casacore::MeasurementSet& set, const Selection& selection
 
 /// The refusal of an expression: what is wrong with it and, where nothing in the set matches, what there is.
 std::string refusal(const casacore::MeasurementSet& set, const SelectionKind& kind, const std::string& expression,
-                    const casacore::AipsError& error) {
-  const std::string option = std::string("--") + kind.option + " '" + expression + "'", words = one_line(error.getMesg());
+                    const std::exception& error) {
+  const std::string option = std::string("--") + kind.option + " '" + expression + "'", words = one_line(error.what());
   if (says_no_match(words)) {
     try {
       const SelectableThings there = selectable_things(set, kind);
@@ -211,6 +211,8 @@ ParsedSelection parse_selection(const casacore::MeasurementSet& set, const std::
     try {
       parse_alone(set, selection, parser, parsed);
     } catch (const casacore::AipsError& error) {
+      throw std::runtime_error(path + ": " + refusal(set, kind, expression, error));
+    } catch (const casacore::ArrayError& error) {  // of a range that ends before it begins
       throw std::runtime_error(path + ": " + refusal(set, kind, expression, error));
     }
     if (parser.give) (all.*parser.give)(expression);

@@ -37,6 +37,8 @@ SetSummary summary_of(const OpenSet& open_set) {
     for (const auto& [field, row] : selected.first_row_of_field) summary.fields.push_back({field, directions.name(field)});
     if (!selected.last_row) return;
     const Integration first = integration_of(set, selected.first_row), last = integration_of(set, *selected.last_row);
+    constexpr double calendar_ends_s = 4e11;  // MJD 0 is the year 1858, and this 14500: times beyond are no dates
+    if (!(first.start_s > 0 && last.end_s < calendar_ends_s)) return;
     summary.start_utc = utc_text(first.start_s);
     summary.end_utc = utc_text(last.end_s);
     summary.length_s = last.end_s - first.start_s;

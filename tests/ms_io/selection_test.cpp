@@ -235,6 +235,8 @@ BOOST_AUTO_TEST_CASE(what_selects_nothing_is_one_line_that_names_what_was_given)
 BOOST_AUTO_TEST_CASE(what_a_set_does_not_have_is_answered_with_what_it_has) {
   const ManySet set;
   const std::vector<std::pair<Selection, std::string>> missing = {
+      {one(&Selection::field, "3~1"), "--field '3~1' selects nothing: "},
+      {one(&Selection::antenna, "3~1"), "--antenna '3~1' selects nothing: "},
       {one(&Selection::field, "3C294"), "--field '3C294': the set has no such field; expected some of 0 '3C 295', 1 'OTHER'"},
       {one(&Selection::spectral_window, "7"),
        "--spw '7': the set has no such spectral window; expected some of 0 (1 to 1.005 GHz, 6 channels), 1 (2 to 2.005 GHz, "

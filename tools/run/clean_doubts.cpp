@@ -65,19 +65,19 @@ std::string mask_threshold_words(const imager::CleanReport& report, const TypedC
       o.minbeamfrac > 0 ? " of --minbeamfrac " + significant(o.minbeamfrac, 3) + " of the beam or more" : "";
   const std::string level = image.one_of_many ? "" : with_prefix(masked.threshold_jy, "Jy/beam", 4) + ", ";
   const std::string takes = "it takes regions" + regions + " above " + level;
-  if (!masked.by_sidelobes) {
-    const bool negative = masked.regions == 0 && report.cycles.front().peak_residual_jy > masked.threshold_jy;
-    return takes + "--noisethreshold " + significant(o.noisethreshold, 3) + " times the noise; expected " +
-           (negative ? "a --negativethreshold, since the brightest pixel is negative"
-            : masked.regions > 0 && masked.pruned == masked.regions ? "a smaller --minbeamfrac"
-                                                                    : "a lower --noisethreshold");
-  }
-  // Half the peak, or half of what was asked where regions were too small.
-  const double lower = std::min(0.5 / report.max_sidelobe, o.sidelobethreshold / 2);
-  return takes + "--sidelobethreshold " + significant(o.sidelobethreshold, 3) + " times the PSF's largest sidelobe" +
-         (image.one_of_many ? "" : " " + significant(report.max_sidelobe, 3)) +
-         " times the peak; expected a lower --sidelobethreshold" +
-         (image.one_of_many ? "" : ", such as " + significant(lower, 2));
+  const double part_of_peak = masked.by_sidelobes ? o.sidelobethreshold * report.max_sidelobe : 0;
+  std::string expected = masked.by_sidelobes ? "a lower --sidelobethreshold" : "a lower --noisethreshold";
+  if (masked.regions == 0 && part_of_peak < 1 && report.cycles.front().peak_residual_jy > masked.threshold_jy)
+    expected = "a --negativethreshold, since the brightest pixel is negative";
+  else if (masked.regions > 0 && masked.pruned == masked.regions && part_of_peak < 0.5)
+    expected = "a smaller --minbeamfrac";
+  else if (masked.by_sidelobes && !image.one_of_many)  // half the peak, or half of what was asked where regions were too small
+    expected += ", such as " + significant(std::min(0.5 / report.max_sidelobe, o.sidelobethreshold / 2), 2);
+  const std::string threshold =
+      masked.by_sidelobes ? "--sidelobethreshold " + significant(o.sidelobethreshold, 3) + " times the PSF's largest sidelobe" +
+                                (image.one_of_many ? "" : " " + significant(report.max_sidelobe, 3)) + " times the peak"
+                          : "--noisethreshold " + significant(o.noisethreshold, 3) + " times the noise";
+  return takes + threshold + "; expected " + expected;
 }
 
 /// An empty mask is right where there is noise alone, which reaches 6 σ in an image of 10⁹ pixels.

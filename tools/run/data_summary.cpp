@@ -79,7 +79,7 @@ std::vector<std::string> windows_of(const std::vector<ms_io::SpectralWindow>& al
 imager::Decision baselines_decision(const ms_io::SetReach& reach) {
   const ScaledUnit metres = scaled_unit(reach.longest_m, "m"), lambda = uv_unit(reach.longest_lambda);
   const auto range = [](double shortest, double longest, const ScaledUnit& unit) {
-    return significant(shortest / unit.size, 3) + " to " + significant(longest / unit.size, 4) + " " + unit.name;
+    return significant(shortest / unit.size, 4) + " to " + significant(longest / unit.size, 4) + " " + unit.name;
   };
   return {"baselines", range(reach.shortest_m, reach.longest_m, metres),
           range(reach.shortest_lambda, reach.longest_lambda, lambda) + ", projected, of rows that are not flagged"};

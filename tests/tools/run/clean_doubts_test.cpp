@@ -100,6 +100,14 @@ BOOST_AUTO_TEST_CASE(an_automatic_mask_that_stays_empty_beside_a_source_names_wh
   BOOST_TEST(has(doubts_of(by_noise, options), "160 Jy/beam, --noisethreshold 100 times the noise; expected a lower"));
   by_noise.cycles.front().masked = {.threshold_jy = 8, .by_sidelobes = false, .regions = 2, .pruned = 2};
   BOOST_TEST(has(doubts_of(by_noise), "expected a smaller --minbeamfrac"));
+  by_noise.cycles.front().masked = {.threshold_jy = 8, .by_sidelobes = false, .regions = 0, .pruned = 0};
+  BOOST_TEST(has(doubts_of(by_noise), "expected a --negativethreshold, since the brightest pixel is negative"));
+  CleanReport by_sidelobes = empty_report();
+  options.sidelobethreshold = 1;
+  by_sidelobes.cycles.front().masked = {.threshold_jy = 0.332 * 106, .by_sidelobes = true, .regions = 3, .pruned = 3};
+  BOOST_TEST(has(doubts_of(by_sidelobes, options), "expected a smaller --minbeamfrac"));
+  by_sidelobes.cycles.front().masked.regions = by_sidelobes.cycles.front().masked.pruned = 0;
+  BOOST_TEST(has(doubts_of(by_sidelobes, options), "expected a --negativethreshold"));
 }
 
 BOOST_AUTO_TEST_CASE(a_mask_is_rightly_empty_where_there_is_noise_or_no_source_within_its_limits) {
