@@ -252,7 +252,7 @@ BOOST_AUTO_TEST_CASE(what_a_set_does_not_have_is_answered_with_what_it_has) {
     const std::string error = error_of_selection(set, selection);
     BOOST_TEST(contains(error, expected), error);
   }
-  // What cannot be read is answered with what may be written.
+  // An expression that casacore cannot parse is refused with the forms that it may have.
   BOOST_TEST(contains(error_of_selection(set, one(&Selection::field, "3~")), "expected fields by id, name or pattern"));
 }
 

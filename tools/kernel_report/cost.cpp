@@ -117,8 +117,8 @@ ReportSection cost_section(SolvedKernels& solved) {
   time.y.label = "seconds";
   return {.heading = "Cost",
           .paragraphs =
-              {"The paper compares five pairs of W and x₀ of equal accuracy. Which ones could not be looked up; these all "
-               "have the misfit of W = 7 at x₀ = 0.25, √E = " +
+              {"The paper's pairs of W and x₀ are under its statements, and differ in accuracy. These all have the misfit "
+               "of W = 7 at x₀ = 0.25, √E = " +
                power_of_ten(std::sqrt(reference.origin.mean_error), 3) + ", found by a search over x₀."},
           .figures = {count, time},
           .tables = {pairs_table(pairs)}};
